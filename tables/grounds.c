@@ -191,13 +191,9 @@ static enum dig_status read_entries(const struct loader *const l)
     enum dig_status status =
         prepare(l, "ground, trajectory, packings, mean, spread",
                 "entry JOIN ground g ON g.id = entry.ground", "ORDER BY ground, trajectory", &s);
-    int    step = SQLITE_DONE;
     size_t hint = 0;
-    while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
+    while (dig_sql_row(s, l->path, &status, l->error)) {
         status = read_entry(l, s, &hint);
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(l->db, l->path, l->error);
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -292,8 +288,8 @@ static void spread_channel(struct dig_grounds *const g, const size_t trajectory,
     }
 }
 
-void dig_grounds_pool_spread_with(const struct dig_grounds *const others,
-                                  struct dig_grounds *const       grounds)
+void dig_grounds_pool_spread(const struct dig_grounds *const others,
+                             struct dig_grounds *const       grounds)
 {
     for (size_t t = 0; t < grounds->trajectories; t++) {
         for (size_t c = 0; c < DIG_CHANNELS; c++) {
@@ -305,9 +301,4 @@ void dig_grounds_pool_spread_with(const struct dig_grounds *const others,
             spread_channel(grounds, t, c, &pool);
         }
     }
-}
-
-void dig_grounds_pool_spread(struct dig_grounds *const grounds)
-{
-    dig_grounds_pool_spread_with(NULL, grounds);
 }

@@ -41,11 +41,9 @@ dig_grounds_load(sqlite3 *db, const char *path, const struct dig_table_head *hea
                  enum dig_grounds_kind kind, struct dig_grounds *grounds, struct dig_error *error);
 
 /// Gives entries with one packing the spread the others have at the same point of the path,
-/// relative to the curve's rms: variances pooled by their degrees of freedom.
-void dig_grounds_pool_spread(struct dig_grounds *grounds);
-
-/// The same with the spread of others' entries added to the pool; their trajectories are the same.
-void dig_grounds_pool_spread_with(const struct dig_grounds *others, struct dig_grounds *grounds);
+/// relative to the curve's rms: variances pooled by their degrees of freedom. others: grounds along
+/// the same trajectories whose spread is added to the pool; NULL: none.
+void dig_grounds_pool_spread(const struct dig_grounds *others, struct dig_grounds *grounds);
 
 /// The time step of the head's scene against what the lightest of these gravels bears.
 struct dig_table_step dig_grounds_step(const struct dig_grounds    *grounds,

@@ -130,7 +130,7 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
     if (status != DIG_OK) {
         return status;
     }
-    dig_grounds_pool_spread(&plain);
+    dig_grounds_pool_spread(NULL, &plain);
     const struct dig_table_step step   = dig_grounds_step(&plain, head);
     size_t                      copies = 1;
     status = dig_grounds_spread_density(head, path, &plain, &copies, error);

@@ -61,7 +61,7 @@ enum dig_status dig_sql_load_approaches(sqlite3 *const db, const char *const pat
         status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
     }
     if (status == DIG_OK) {
-        dig_grounds_pool_spread_with(&plain, &other);
+        dig_grounds_pool_spread(&plain, &other);
         status = dig_grounds_spread_density(head, path, &other, &copies, error);
     }
     if (status == DIG_OK) {

@@ -114,14 +114,13 @@ static enum dig_status read_run(sqlite3_stmt *const s, const char *const path,
     return status;
 }
 
-static enum dig_status pool(sqlite3_stmt *const s, sqlite3 *const db, const char *const path,
+static enum dig_status pool(sqlite3_stmt *const s, const char *const path,
                             const struct dig_table_head *const head,
                             struct dig_covariance covariance[], struct dig_error *const error)
 {
     struct gravel   g      = { .ground = -1 };
     enum dig_status status = DIG_OK;
-    int             step   = SQLITE_DONE;
-    while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
+    while (dig_sql_row(s, path, &status, error)) {
         double              curve[DIG_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
         const sqlite3_int64 ground                                = sqlite3_column_int64(s, 0);
         const sqlite3_int64 trajectory                            = sqlite3_column_int64(s, 1);
@@ -133,9 +132,6 @@ static enum dig_status pool(sqlite3_stmt *const s, sqlite3 *const db, const char
         if (status == DIG_OK) {
             take(&g, (const double(*)[DIG_CURVE_POINTS])curve);
         }
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(db, path, error);
     }
     if (status == DIG_OK) {
         close_gravel(&g, covariance);
@@ -162,7 +158,7 @@ enum dig_status dig_sql_load_covariance(sqlite3 *const db, const char *const pat
                         "ORDER BY ground, trajectory, packing",
                         &s, error);
     if (status == DIG_OK) {
-        status = pool(s, db, path, head, made, error);
+        status = pool(s, path, head, made, error);
     }
     (void)sqlite3_finalize(s);
     if (status != DIG_OK) {

@@ -63,7 +63,7 @@ enum dig_status dig_sql_load_effects(sqlite3 *const db, const char *const path,
     if (status != DIG_OK) {
         return status;
     }
-    dig_grounds_pool_spread(&varied);
+    dig_grounds_pool_spread(NULL, &varied);
     const size_t                 n     = varied.grounds;
     const size_t                 each  = varied.trajectories;
     struct dig_effect_set *const made  = calloc(1, sizeof *made);

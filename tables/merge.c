@@ -55,12 +55,11 @@ static enum dig_status copy(sqlite3 *const from, const char *const input, const 
 {
     sqlite3_stmt   *row    = NULL;
     sqlite3_stmt   *into   = NULL;
-    int             step   = SQLITE_ERROR;
     enum dig_status status = dig_sql_prepare(from, input, select, &row, error);
     if (status == DIG_OK) {
         status = dig_sql_prepare(to->db, to->path, insert, &into, error);
     }
-    while (status == DIG_OK && (step = sqlite3_step(row)) == SQLITE_ROW) {
+    while (dig_sql_row(row, input, &status, error)) {
         for (int i = 0; i < sqlite3_column_count(row); i++) {
             (void)sqlite3_bind_value(into, i + 1, sqlite3_column_value(row, i));
         }
@@ -68,9 +67,6 @@ static enum dig_status copy(sqlite3 *const from, const char *const input, const 
             status = dig_sql_refuse(to->db, to->path, error);
         }
         (void)sqlite3_reset(into);
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(from, input, error);
     }
     (void)sqlite3_finalize(row);
     (void)sqlite3_finalize(into);
@@ -81,13 +77,9 @@ static enum dig_status copy(sqlite3 *const from, const char *const input, const 
 static enum dig_status check_conflict(const struct dig_store *const store, const char *const input,
                                       struct dig_error *const error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(store->db, conflict_sql, -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(store->db, input, error);
-    }
-    enum dig_status status = DIG_OK;
-    const int       step   = sqlite3_step(s);
-    if (step == SQLITE_ROW) {
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(store->db, input, conflict_sql, &s, error);
+    if (dig_sql_row(s, input, &status, error)) {
         const char *const         effect = (const char *)sqlite3_column_text(s, 3);
         const bool                plain  = effect == NULL || effect[0] == '\0';
         const int                 at     = sqlite3_column_int(s, 4);
@@ -104,8 +96,6 @@ static enum dig_status check_conflict(const struct dig_store *const store, const
             plain ? "" : effect,
             at >= 0 && at < (int)store->head.trajectories ? store->head.trajectory[at].name : "?",
             how);
-    } else if (step != SQLITE_DONE) {
-        status = dig_sql_refuse(store->db, input, error);
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -166,19 +156,13 @@ static enum dig_status take(struct dig_store *const store, const char *const inp
 
 static enum dig_status refresh_entries(struct dig_store *const store, struct dig_error *const error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(store->db, "SELECT DISTINCT ground, trajectory FROM run ORDER BY 1, 2",
-                           -1, &s, NULL) != SQLITE_OK) {
-        return dig_sql_refuse(store->db, store->path, error);
-    }
-    enum dig_status status = DIG_OK;
-    int             step   = SQLITE_DONE;
-    while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        dig_sql_prepare(store->db, store->path,
+                        "SELECT DISTINCT ground, trajectory FROM run ORDER BY 1, 2", &s, error);
+    while (dig_sql_row(s, store->path, &status, error)) {
         status = dig_entry_refresh(store, sqlite3_column_int64(s, 0),
                                    (size_t)sqlite3_column_int64(s, 1), error);
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(store->db, store->path, error);
     }
     (void)sqlite3_finalize(s);
     return status;

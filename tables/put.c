@@ -103,12 +103,11 @@ static enum dig_status make_ground(struct dig_store *const            store,
         "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
         "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO NOTHING",
         &s, error);
-    if (status == DIG_OK) {
-        dig_ground_bind(s, origin);
-        status =
-            sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(store->db, store->path, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    (void)sqlite3_finalize(s);
+    dig_ground_bind(s, origin);
+    status = dig_sql_done(s, store->path, error);
     return status == DIG_OK ? dig_ground_find(store, origin, id, error) : status;
 }
 
@@ -171,8 +170,8 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     dig_floats_pack(NUMBERS, &curve.mean[0][0], mean);
     dig_floats_pack(NUMBERS, &curve.sd[0][0], spread);
 
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
+    sqlite3_stmt         *s = NULL;
+    const enum dig_status status =
         dig_sql_prepare(store->db, store->path,
                         "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
                         "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO UPDATE "
@@ -188,10 +187,7 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     if (e->packings > 1) {
         (void)sqlite3_bind_blob(s, 5, spread, sizeof spread, SQLITE_STATIC);
     }
-    status =
-        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(store->db, store->path, error);
-    (void)sqlite3_finalize(s);
-    return status;
+    return dig_sql_done(s, store->path, error);
 }
 
 enum dig_status dig_entry_refresh(struct dig_store *const store, const sqlite3_int64 ground,

@@ -61,11 +61,9 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     dig_ground_bind(s, origin);
     (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)origin->packing);
     (void)sqlite3_bind_int64(s, 9, (sqlite3_int64)origin->trajectory);
-    const int step = sqlite3_step(s);
-    if (step == SQLITE_ROW || step == SQLITE_DONE) {
-        *there = step == SQLITE_ROW;
-    } else {
-        status = dig_sql_refuse(store->db, store->path, error);
+    const bool found = dig_sql_row(s, store->path, &status, error);
+    if (status == DIG_OK) {
+        *there = found;
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -150,8 +148,7 @@ static enum dig_status walk(struct dig_store *const store, sqlite3_stmt *const s
                             struct dig_error *const             error)
 {
     enum dig_status status = DIG_OK;
-    int             step   = SQLITE_DONE;
-    while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
+    while (dig_sql_row(s, store->path, &status, error)) {
         struct dig_run run   = { .windows = 0 };
         float         *value = NULL;
         status               = read_run(store, s, &run, &value, error);
@@ -159,9 +156,6 @@ static enum dig_status walk(struct dig_store *const store, sqlite3_stmt *const s
             status = visitor->visit(visitor->context, &run, error);
         }
         free(value);
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(store->db, store->path, error);
     }
     return status;
 }

@@ -180,8 +180,7 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
     if (status != DIG_OK) {
         return status;
     }
-    int step;
-    while (status == DIG_OK && (step = sqlite3_step(s)) == SQLITE_ROW) {
+    while (dig_sql_row(s, path, &status, error)) {
         const sqlite3_int64 id     = sqlite3_column_int64(s, 0);
         const sqlite3_int64 number = sqlite3_column_int64(s, 5);
         if (number == 0) {
@@ -212,9 +211,6 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
                    !isfinite(p->vx_mps) || !isfinite(p->vz_mps) || !isfinite(p->omega_radps)) {
             status = damaged(path, "trajectory, phase: expected finite numbers", error);
         }
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = dig_sql_refuse(db, path, error);
     }
     (void)sqlite3_finalize(s);
     return status;

@@ -122,6 +122,25 @@ enum dig_status dig_sql_first(sqlite3 *const db, const char *const path, const c
     return status;
 }
 
+bool dig_sql_row(sqlite3_stmt *const s, const char *const path, enum dig_status *const status,
+                 struct dig_error *const error)
+{
+    const int step = *status == DIG_OK ? sqlite3_step(s) : SQLITE_DONE;
+    if (step != SQLITE_ROW && step != SQLITE_DONE) {
+        *status = dig_sql_refuse(sqlite3_db_handle(s), path, error);
+    }
+    return step == SQLITE_ROW;
+}
+
+enum dig_status dig_sql_done(sqlite3_stmt *const s, const char *const path,
+                             struct dig_error *const error)
+{
+    const enum dig_status status =
+        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(sqlite3_db_handle(s), path, error);
+    (void)sqlite3_finalize(s);
+    return status;
+}
+
 void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_head *const head)
 {
     *head = (struct dig_table_head){
@@ -136,17 +155,20 @@ void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_hea
     dig_scene_hash(scene, head->scene_hash);
 }
 
-static bool insert_scene(sqlite3 *const db, const struct dig_scene *const scene)
+static enum dig_status insert_scene(sqlite3 *const db, const char *const path,
+                                    const struct dig_scene *const scene,
+                                    struct dig_error *const       error)
 {
     struct dig_table_head head;
     char                  text[DIG_SCENE_TEXT_SIZE];
     (void)dig_scene_canonical(scene, sizeof text, text);
     dig_table_head_of(scene, &head);
 
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, "INSERT INTO scene VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", -1, &s,
-                           NULL) != SQLITE_OK) {
-        return false;
+    sqlite3_stmt         *s      = NULL;
+    const enum dig_status status = dig_sql_prepare(
+        db, path, "INSERT INTO scene VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", &s, error);
+    if (status != DIG_OK) {
+        return status;
     }
     (void)sqlite3_bind_text(s, 1, head.scene_name, -1, SQLITE_STATIC);
     (void)sqlite3_bind_text(s, 2, head.scene_hash, -1, SQLITE_STATIC);
@@ -156,31 +178,32 @@ static bool insert_scene(sqlite3 *const db, const struct dig_scene *const scene)
     (void)sqlite3_bind_double(s, 6, head.young_Pa);
     (void)sqlite3_bind_double(s, 7, head.smooth_half_s);
     (void)sqlite3_bind_int(s, 8, DIG_CURVE_POINTS);
-    const bool done = sqlite3_step(s) == SQLITE_DONE;
-    (void)sqlite3_finalize(s);
-    return done;
+    return dig_sql_done(s, path, error);
 }
 
-static bool insert_trajectory(sqlite3 *const db, const int id, const struct dig_trajectory *const t)
+static enum dig_status insert_trajectory(sqlite3 *const db, const char *const path, const int id,
+                                         const struct dig_trajectory *const t,
+                                         struct dig_error *const            error)
 {
-    sqlite3_stmt *s = NULL;
-    if (sqlite3_prepare_v2(db, "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)", -1, &s, NULL) !=
-        SQLITE_OK) {
-        return false;
+    sqlite3_stmt   *s = NULL;
+    enum dig_status status =
+        dig_sql_prepare(db, path, "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)", &s, error);
+    if (status != DIG_OK) {
+        return status;
     }
     (void)sqlite3_bind_int(s, 1, id);
     (void)sqlite3_bind_text(s, 2, t->name, -1, SQLITE_STATIC);
     (void)sqlite3_bind_double(s, 3, t->theta0_rad);
     (void)sqlite3_bind_double(s, 4, t->start_x_m);
     (void)sqlite3_bind_double(s, 5, t->start_z_m);
-    bool done = sqlite3_step(s) == SQLITE_DONE;
-    (void)sqlite3_finalize(s);
-
-    s    = NULL;
-    done = done && sqlite3_prepare_v2(db, "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)", -1, &s,
-                                      NULL) == SQLITE_OK;
-    for (size_t i = 0; done && i < t->phases; i++) {
+    status = dig_sql_done(s, path, error);
+    for (size_t i = 0; status == DIG_OK && i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
+        status =
+            dig_sql_prepare(db, path, "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)", &s, error);
+        if (status != DIG_OK) {
+            return status;
+        }
         (void)sqlite3_bind_int(s, 1, id);
         (void)sqlite3_bind_int(s, 2, (int)i);
         (void)sqlite3_bind_text(s, 3, p->name, -1, SQLITE_STATIC);
@@ -188,11 +211,9 @@ static bool insert_trajectory(sqlite3 *const db, const int id, const struct dig_
         (void)sqlite3_bind_double(s, 5, p->vx_mps);
         (void)sqlite3_bind_double(s, 6, p->vz_mps);
         (void)sqlite3_bind_double(s, 7, p->omega_radps);
-        done = sqlite3_step(s) == SQLITE_DONE;
-        (void)sqlite3_reset(s);
+        status = dig_sql_done(s, path, error);
     }
-    (void)sqlite3_finalize(s);
-    return done;
+    return status;
 }
 
 enum dig_status dig_schema_tables(sqlite3 *const db, const char *const path, const int version,
@@ -230,13 +251,11 @@ enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
     if (status == DIG_OK) {
         status = dig_schema_number(db, path, error);
     }
-    if (status == DIG_OK && !insert_scene(db, scene)) {
-        status = dig_sql_refuse(db, path, error);
+    if (status == DIG_OK) {
+        status = insert_scene(db, path, scene, error);
     }
     for (size_t i = 0; status == DIG_OK && i < scene->trajectories; i++) {
-        if (!insert_trajectory(db, (int)i, &scene->trajectory[i])) {
-            status = dig_sql_refuse(db, path, error);
-        }
+        status = insert_trajectory(db, path, (int)i, &scene->trajectory[i], error);
     }
     if (status == DIG_OK) {
         status = dig_sql_run(db, path, "COMMIT", error);

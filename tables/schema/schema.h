@@ -68,6 +68,15 @@ DIG_MUST_CHECK enum dig_status dig_sql_prepare(sqlite3 *db, const char *path, co
 DIG_MUST_CHECK enum dig_status dig_sql_first(sqlite3 *db, const char *path, const char *sql,
                                              sqlite3_stmt **s, struct dig_error *error);
 
+/// Where *status is DIG_OK, steps to the next row. False at the end, and when that fails, which
+/// *status then says.
+bool dig_sql_row(sqlite3_stmt *s, const char *path, enum dig_status *status,
+                 struct dig_error *error);
+
+/// Runs a statement that gives no rows, and finalizes it.
+DIG_MUST_CHECK enum dig_status dig_sql_done(sqlite3_stmt *s, const char *path,
+                                            struct dig_error *error);
+
 /// Makes an empty database a table of this version without rows; its number is not written.
 DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path, int version,
                                                  struct dig_error *error);

@@ -25,11 +25,6 @@ struct sealer {
     struct dig_error *error;
 };
 
-static enum dig_status refuse(const struct sealer *const s)
-{
-    return dig_sql_refuse(s->db, s->path, s->error);
-}
-
 static enum dig_status begin(struct sealer *const s)
 {
     const enum dig_status status = dig_sql_prepare(s->db, s->path, entry_sql, &s->entry, s->error);
@@ -84,11 +79,11 @@ static enum dig_status add_rows(const struct sealer *const s, sqlite3_stmt *cons
     (void)sqlite3_reset(rows);
     (void)sqlite3_bind_int64(rows, 1, ground);
     (void)sqlite3_bind_int64(rows, 2, trajectory);
-    int step;
-    while ((step = sqlite3_step(rows)) == SQLITE_ROW) {
+    enum dig_status status = DIG_OK;
+    while (dig_sql_row(rows, s->path, &status, s->error)) {
         add_row(hash, rows);
     }
-    return step == SQLITE_DONE ? DIG_OK : refuse(s);
+    return status;
 }
 
 static enum dig_status sum_of(const struct sealer *const s, const sqlite3_int64 ground,
@@ -131,9 +126,7 @@ static enum dig_status write_one(const struct sealer *const s, const sqlite3_int
     (void)sqlite3_bind_int64(into, 1, ground);
     (void)sqlite3_bind_int64(into, 2, trajectory);
     (void)sqlite3_bind_int64(into, 3, sum);
-    status = sqlite3_step(into) == SQLITE_DONE ? DIG_OK : refuse(s);
-    (void)sqlite3_finalize(into);
-    return status;
+    return dig_sql_done(into, s->path, s->error);
 }
 
 enum dig_status dig_seal_write(sqlite3 *const db, const char *const path,
@@ -171,12 +164,8 @@ static enum dig_status each(const struct sealer *const s, const char *const sql,
 {
     sqlite3_stmt   *entry  = NULL;
     enum dig_status status = dig_sql_prepare(s->db, s->path, sql, &entry, s->error);
-    int             step   = SQLITE_DONE;
-    while (status == DIG_OK && (step = sqlite3_step(entry)) == SQLITE_ROW) {
+    while (dig_sql_row(entry, s->path, &status, s->error)) {
         status = what(s, entry);
-    }
-    if (status == DIG_OK && step != SQLITE_DONE) {
-        status = refuse(s);
     }
     (void)sqlite3_finalize(entry);
     return status;
