@@ -5,6 +5,7 @@
 
 #include "core/sample.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /// One line of a force recording: a rig with a force sensor, or a DEM. Frames of core/curve.h:
@@ -28,6 +29,9 @@ struct dig_machine_recording {
     size_t             rows;
     struct dig_sample *row; // [rows], malloc; time_ns counts from the recording's own zero
 };
+
+/// True when every row has a carried mass.
+bool dig_recording_knows_carried(const struct dig_recording *recording);
 
 /// Free what the rows hold and zero the struct. NULL and a zeroed struct are allowed.
 void dig_recording_finish(struct dig_recording *recording);

@@ -71,26 +71,27 @@ bool dig_signal_gives_moment(const enum dig_sensing sensing, const enum dig_sign
     return dig_signal_is_needed(sensing, signal) && !of_others;
 }
 
-bool dig_sample_has_moment(const struct dig_sample *const sample)
+// Whether all signals that are wanted are valid.
+static bool has_all(const struct dig_sample *const sample,
+                    bool (*const is_wanted)(enum dig_sensing, enum dig_signal))
 {
     assert(sample != NULL);
     const enum dig_sensing sensing = dig_signals_sensing(sample->valid);
     bool                   has     = true;
     for (int i = 0; i < DIG_SIGNALS; i++) {
-        has = has && (sample->valid[i] || !dig_signal_gives_moment(sensing, (enum dig_signal)i));
+        has = has && (sample->valid[i] || !is_wanted(sensing, (enum dig_signal)i));
     }
     return has;
 }
 
+bool dig_sample_has_moment(const struct dig_sample *const sample)
+{
+    return has_all(sample, dig_signal_gives_moment);
+}
+
 bool dig_sample_is_complete(const struct dig_sample *const sample)
 {
-    assert(sample != NULL);
-    const enum dig_sensing sensing = dig_signals_sensing(sample->valid);
-    bool                   has     = true;
-    for (int i = 0; i < DIG_SIGNALS; i++) {
-        has = has && (sample->valid[i] || !dig_signal_is_needed(sensing, (enum dig_signal)i));
-    }
-    return has;
+    return has_all(sample, dig_signal_is_needed);
 }
 
 void dig_signal_name_missing(const bool valid[const DIG_SIGNALS], const size_t size,

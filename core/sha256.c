@@ -20,6 +20,17 @@ void dig_sha256_finish(struct dig_sha256 *const hash, uint8_t digest[const 32])
     sha256_digest(&hash->context, 32, digest);
 }
 
+uint64_t dig_sha256_finish_number(struct dig_sha256 *const hash)
+{
+    uint8_t  digest[32];
+    uint64_t bits = 0;
+    dig_sha256_finish(hash, digest);
+    for (size_t i = 0; i < 8; i++) {
+        bits = bits << 8 | digest[i];
+    }
+    return bits >> 1;
+}
+
 void dig_sha256_hex(const void *const data, const size_t size, char hex[const 65])
 {
     static const char digits[] = "0123456789abcdef";

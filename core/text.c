@@ -1,8 +1,9 @@
 #include "core/text.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdarg.h>
-#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 // The bytes that a character beginning with c has; 0: none begins so.
@@ -78,6 +79,28 @@ void dig_text_list(const size_t size, char list[], const char *const word)
     const size_t used = strlen(list);
     assert(used < size);
     (void)snprintf(list + used, size - used, "%s%s", used == 0 ? "" : ", ", word);
+}
+
+bool dig_text_number(const char *const text, double *const value)
+{
+    assert(text != NULL && value != NULL);
+    char        *end    = NULL;
+    const double number = strtod(text, &end);
+    if (text[strspn(text, "0123456789+-.eE")] != '\0' || end == text || *end != '\0' ||
+        !isfinite(number)) {
+        return false;
+    }
+    *value = number;
+    return true;
+}
+
+int dig_text_line(const char *const text, const size_t at)
+{
+    int line = 1;
+    for (size_t i = 0; i < at; i++) {
+        line += text[i] == '\n';
+    }
+    return line;
 }
 
 void dig_text_put(FILE *const to, const char *const text)

@@ -3,6 +3,7 @@
 #ifndef DIG_CORE_TEXT_H
 #define DIG_CORE_TEXT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -21,6 +22,13 @@ void dig_text_copy(size_t size, char to[], const char *text);
 
 /// Puts word at the end of list, behind a comma where it is not the first; cut to size.
 void dig_text_list(size_t size, char list[], const char *word);
+
+/// A plain decimal number, all of text and finite; strtod() alone would take "nan", "inf" and
+/// "0x1p3" as well. By the thread's locale. False leaves *value.
+bool dig_text_number(const char *text, double *value);
+
+/// The line, from 1, on which byte `at` of a text stands.
+int dig_text_line(const char *text, size_t at);
 
 /// text as dig_text_clean() makes it, and in one line: a line break or a tab becomes '?', too.
 void dig_text_put(FILE *to, const char *text);

@@ -234,15 +234,6 @@ static void put_field(FILE *const file, const double value)
     }
 }
 
-static bool has_carried(const struct dig_recording *const recording)
-{
-    size_t known = 0;
-    while (known < recording->rows && isfinite(recording->row[known].carried_kg)) {
-        known++;
-    }
-    return known == recording->rows;
-}
-
 enum dig_status dig_recording_write(const char *const                 path,
                                     const struct dig_recording *const recording,
                                     struct dig_error *const           error)
@@ -255,7 +246,7 @@ enum dig_status dig_recording_write(const char *const                 path,
         return status;
     }
     struct dig_c_locale locale  = dig_c_locale_enter();
-    const bool          carried = has_carried(recording);
+    const bool          carried = dig_recording_knows_carried(recording);
     put_header(out.file, carried ? FORCE_COLUMNS : FORCE_COLUMNS - 1, force_column);
     for (size_t i = 0; i < recording->rows; i++) {
         const struct dig_force_row *const r = &recording->row[i];

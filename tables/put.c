@@ -60,21 +60,12 @@ static enum dig_status check_recording(const struct dig_recording *const r, cons
     return DIG_OK;
 }
 
-static bool knows_carried(const struct dig_recording *const r)
-{
-    size_t known = 0;
-    while (known < r->rows && isfinite(r->row[known].carried_kg)) {
-        known++;
-    }
-    return known == r->rows;
-}
-
 // The samples as they are stored, little endian, malloc'ed; NULL without memory.
 static uint8_t *pack_recording(const struct dig_recording *const r)
 {
     float *const   value   = malloc(DIG_CHANNELS * r->rows * sizeof *value);
     uint8_t *const packed  = malloc(DIG_CHANNELS * r->rows * 4);
-    const bool     carried = knows_carried(r);
+    const bool     carried = dig_recording_knows_carried(r);
     if (value != NULL && packed != NULL) {
         for (size_t i = 0; i < r->rows; i++) {
             value[DIG_CHANNEL_MY_Nm * r->rows + i] = (float)r->row[i].My_Nm;

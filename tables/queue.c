@@ -19,15 +19,9 @@ uint64_t dig_bed_seed(const struct dig_gravel *const gravel, const size_t packin
     assert(length > 0 && (size_t)length < sizeof text);
 
     struct dig_sha256 hash;
-    uint8_t           digest[32];
     dig_sha256_init(&hash);
     dig_sha256_add(&hash, text, (size_t)length);
-    dig_sha256_finish(&hash, digest);
-    uint64_t seed = 0;
-    for (size_t i = 0; i < 8; i++) {
-        seed = seed << 8 | digest[i];
-    }
-    return seed >> 1;
+    return dig_sha256_finish_number(&hash);
 }
 
 // Fills what the bed still lacks into job->trajectory.

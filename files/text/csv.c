@@ -139,21 +139,6 @@ static enum dig_status make_room(struct reader *const r)
     return DIG_OK;
 }
 
-// A plain decimal number: strtod alone would take "nan", "inf" and "0x1p3" as well.
-static bool parse_number(const char *const field, double *const value)
-{
-    if (field[strspn(field, "0123456789+-.eE")] != '\0') {
-        return false;
-    }
-    char        *end    = NULL;
-    const double number = strtod(field, &end);
-    if (end == field || *end != '\0' || !isfinite(number)) {
-        return false;
-    }
-    *value = number;
-    return true;
-}
-
 static enum dig_status read_row(struct reader *const r, char *line)
 {
     enum dig_status status = make_room(r);
@@ -174,7 +159,7 @@ static enum dig_status read_row(struct reader *const r, char *line)
         if (field[0] == '\0' && column->may_empty) {
             continue;
         }
-        if (!parse_number(field, &row[r->target[fields]])) {
+        if (!dig_text_number(field, &row[r->target[fields]])) {
             return dig_error_set(r->error, DIG_EINVAL,
                                  "%s:%d: column %s: \"%.40s\", expected a finite number", r->path,
                                  r->line, column->name, field);

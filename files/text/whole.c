@@ -5,6 +5,7 @@
 
 #include "core/part.h"
 #include "core/regular.h"
+#include "core/text.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -51,16 +52,6 @@ static enum dig_status read_stream(FILE *const file, char **const text, size_t *
     return DIG_OK;
 }
 
-// The line on which byte `at` stands.
-static int line_at(const char *const text, const size_t at)
-{
-    int line = 1;
-    for (size_t i = 0; i < at; i++) {
-        line += text[i] == '\n';
-    }
-    return line;
-}
-
 enum dig_status dig_file_read(const char *const path, char **const text, size_t *const size,
                               struct dig_error *const error)
 {
@@ -86,7 +77,7 @@ enum dig_status dig_file_read(const char *const path, char **const text, size_t 
 
     const char *const nul = memchr(all, '\0', used);
     if (nul != NULL) {
-        const int line = line_at(all, (size_t)(nul - all));
+        const int line = dig_text_line(all, (size_t)(nul - all));
         free(all);
         return dig_error_set(error, DIG_EINVAL, "%s:%d: a NUL byte, expected a text file", path,
                              line);

@@ -8,7 +8,6 @@
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -45,7 +44,7 @@ static struct key element_of(const struct key *const parent, const size_t index)
 }
 
 __attribute__((format(printf, 4, 5))) static enum dig_status refuse(const struct check *const check,
-                                                                    const int                 line,
+                                                                    const yaml_node_t *const  at,
                                                                     const struct key *const   key,
                                                                     const char *const format, ...)
 {
@@ -54,8 +53,8 @@ __attribute__((format(printf, 4, 5))) static enum dig_status refuse(const struct
     va_start(args, format);
     (void)vsnprintf(why, sizeof why, format, args);
     va_end(args);
-    return dig_error_set(check->error, DIG_EINVAL, "%s:%d: %s%s%s", check->path, line, key->text,
-                         key->text[0] == '\0' ? "" : ": ", why);
+    return dig_error_set(check->error, DIG_EINVAL, "%s:%d: %s%s%s", check->path,
+                         dig_yaml_line_of(at), key->text, key->text[0] == '\0' ? "" : ": ", why);
 }
 
 // What a schema wants, for people.
@@ -82,16 +81,6 @@ static const char *stands(const yaml_node_t *const node, const size_t size, char
     }
     (void)snprintf(text, size, "\"%.60s\"", dig_yaml_text_of(node));
     return text;
-}
-
-static bool is_number(const char *const text)
-{
-    if (text[strspn(text, "0123456789+-.eE")] != '\0') {
-        return false;
-    }
-    char        *end    = NULL;
-    const double number = strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(number);
 }
 
 static bool is_signed(const char *const text, const uint32_t bytes)
@@ -136,8 +125,7 @@ static enum dig_status check_word(const struct check *const check, const yaml_no
         }
         dig_text_list(sizeof list, list, word);
     }
-    return refuse(check, dig_yaml_line_of(node), key, "\"%.60s\", expected one of %s",
-                  dig_yaml_text_of(node), list);
+    return refuse(check, node, key, "\"%.60s\", expected one of %s", dig_yaml_text_of(node), list);
 }
 
 static enum dig_status check_length(const struct check *const check, const yaml_node_t *const node,
@@ -152,20 +140,18 @@ static enum dig_status check_length(const struct check *const check, const yaml_
         c += n;
     }
     if (*c != '\0') {
-        return refuse(check, dig_yaml_line_of(node), key,
+        return refuse(check, node, key,
                       "\"%.60s\" with a control character or a line break, expected none",
                       dig_yaml_text_of(node));
     }
     const size_t length = strlen(dig_yaml_text_of(node));
     if (length < schema->string.min) {
-        return refuse(check, dig_yaml_line_of(node), key,
-                      "%s, expected a text of at least %u characters",
+        return refuse(check, node, key, "%s, expected a text of at least %u characters",
                       length == 0 ? "nothing" : "too short", schema->string.min);
     }
     if (length > schema->string.max) {
-        return refuse(check, dig_yaml_line_of(node), key,
-                      "\"%.30s…\" of %zu characters, expected at most %u", dig_yaml_text_of(node),
-                      length, schema->string.max);
+        return refuse(check, node, key, "\"%.30s…\" of %zu characters, expected at most %u",
+                      dig_yaml_text_of(node), length, schema->string.max);
     }
     return DIG_OK;
 }
@@ -176,8 +162,8 @@ static enum dig_status check_scalar(const struct check *const check, const yaml_
 {
     char seen[80];
     if (node->type != YAML_SCALAR_NODE) {
-        return refuse(check, dig_yaml_line_of(node), key, "%s, expected %s",
-                      stands(node, sizeof seen, seen), wanted[schema->type]);
+        return refuse(check, node, key, "%s, expected %s", stands(node, sizeof seen, seen),
+                      wanted[schema->type]);
     }
     if (schema->type == CYAML_ENUM) {
         return check_word(check, node, schema, key);
@@ -185,14 +171,15 @@ static enum dig_status check_scalar(const struct check *const check, const yaml_
     if (schema->type == CYAML_STRING) {
         return check_length(check, node, schema, key);
     }
-    const char *const text = dig_yaml_text_of(node);
-    const bool        fits = schema->type == CYAML_INT    ? is_signed(text, schema->data_size)
-                             : schema->type == CYAML_UINT ? is_unsigned(text, schema->data_size)
-                             : schema->type == CYAML_BOOL ? is_bool(text)
-                                                          : is_number(text);
+    double            number = 0.0;
+    const char *const text   = dig_yaml_text_of(node);
+    const bool        fits   = schema->type == CYAML_INT    ? is_signed(text, schema->data_size)
+                               : schema->type == CYAML_UINT ? is_unsigned(text, schema->data_size)
+                               : schema->type == CYAML_BOOL ? is_bool(text)
+                                                            : dig_text_number(text, &number);
     return fits ? DIG_OK
-                : refuse(check, dig_yaml_line_of(node), key, "%s, expected %s",
-                         stands(node, sizeof seen, seen), wanted[schema->type]);
+                : refuse(check, node, key, "%s, expected %s", stands(node, sizeof seen, seen),
+                         wanted[schema->type]);
 }
 
 // These call each other as deep as the schema nests, which is finite; the document, with its
@@ -242,14 +229,14 @@ static enum dig_status check_mapping(const struct check *const check, const yaml
     char list[200] = "";
     char seen[80];
     if (map->type != YAML_MAPPING_NODE) {
-        return refuse(check, dig_yaml_line_of(map), at, "%s, expected a mapping of %s",
+        return refuse(check, map, at, "%s, expected a mapping of %s",
                       stands(map, sizeof seen, seen), keys_of(schema, sizeof list, list));
     }
     for (const yaml_node_pair_t *pair = map->data.mapping.pairs.start;
          pair < map->data.mapping.pairs.top; pair++) {
         const yaml_node_t *const name = yaml_document_get_node(check->document, pair->key);
         if (name->type != YAML_SCALAR_NODE) {
-            return refuse(check, dig_yaml_line_of(name), at, "%s as a key, expected a text",
+            return refuse(check, name, at, "%s as a key, expected a text",
                           stands(name, sizeof seen, seen));
         }
         const struct key                  key   = member_of(at, dig_yaml_text_of(name));
@@ -260,13 +247,12 @@ static enum dig_status check_mapping(const struct check *const check, const yaml
             for (const cyaml_schema_field_t *f = schema->mapping.fields; f->key != NULL; f++) {
                 dig_guess_try(&guess, f->key);
             }
-            return refuse(check, dig_yaml_line_of(name), &key, "unknown key, expected one of %s%s",
+            return refuse(check, name, &key, "unknown key, expected one of %s%s",
                           keys_of(schema, sizeof list, list), dig_guess_text(&guess, "", text));
         }
         const int before = line_before(check, map, pair);
         if (before != 0) {
-            return refuse(check, dig_yaml_line_of(name), &key,
-                          "again (first on line %d), expected once", before);
+            return refuse(check, name, &key, "again (first on line %d), expected once", before);
         }
         const enum dig_status status = check_value(
             check, yaml_document_get_node(check->document, pair->value), &field->value, &key);
@@ -278,8 +264,7 @@ static enum dig_status check_mapping(const struct check *const check, const yaml
         if ((f->value.flags & CYAML_FLAG_OPTIONAL) == 0 &&
             dig_yaml_value(check->document, map, f->key) == NULL) {
             const struct key key = member_of(at, f->key);
-            return refuse(check, dig_yaml_line_of(map), &key, "missing, expected %s",
-                          wanted[f->value.type]);
+            return refuse(check, map, &key, "missing, expected %s", wanted[f->value.type]);
         }
     }
     return DIG_OK;
@@ -292,18 +277,16 @@ static enum dig_status check_list(const struct check *const check, const yaml_no
 {
     char seen[80];
     if (list->type != YAML_SEQUENCE_NODE) {
-        return refuse(check, dig_yaml_line_of(list), at, "%s, expected a list",
-                      stands(list, sizeof seen, seen));
+        return refuse(check, list, at, "%s, expected a list", stands(list, sizeof seen, seen));
     }
     const yaml_node_item_t *const first = list->data.sequence.items.start;
     const size_t                  count = (size_t)(list->data.sequence.items.top - first);
     if (count < schema->sequence.min || count > schema->sequence.max) {
         if (schema->sequence.min == schema->sequence.max) {
-            return refuse(check, dig_yaml_line_of(list), at, "%zu values, expected %u", count,
-                          schema->sequence.min);
+            return refuse(check, list, at, "%zu values, expected %u", count, schema->sequence.min);
         }
-        return refuse(check, dig_yaml_line_of(list), at, "%zu values, expected %u to %u", count,
-                      schema->sequence.min, schema->sequence.max);
+        return refuse(check, list, at, "%zu values, expected %u to %u", count, schema->sequence.min,
+                      schema->sequence.max);
     }
     for (size_t i = 0; i < count; i++) {
         const struct key      key    = element_of(at, i);

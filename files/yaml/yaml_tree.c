@@ -1,19 +1,11 @@
 #include "files/yaml/yaml_tree.h"
 
+#include "core/text.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #define KEY_SIZE 160
-
-// The line of a byte that is no text: libyaml counts bytes, not lines, until it has characters.
-static int line_of_offset(const char *const text, const size_t size, const size_t offset)
-{
-    int line = 1;
-    for (size_t i = 0; i < size && i < offset; i++) {
-        line += text[i] == '\n';
-    }
-    return line;
-}
 
 static enum dig_status refuse_syntax(const char *const path, const char *const text,
                                      const size_t size, const yaml_parser_t *const parser,
@@ -22,9 +14,10 @@ static enum dig_status refuse_syntax(const char *const path, const char *const t
     if (parser->error == YAML_MEMORY_ERROR) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
     }
-    const int line = parser->error == YAML_READER_ERROR
-                         ? line_of_offset(text, size, parser->problem_offset)
-                         : (int)parser->problem_mark.line + 1;
+    // Of a byte that is no text libyaml knows the place, not the line.
+    const size_t at   = parser->problem_offset < size ? parser->problem_offset : size;
+    const int    line = parser->error == YAML_READER_ERROR ? dig_text_line(text, at)
+                                                           : (int)parser->problem_mark.line + 1;
     return dig_error_set(error, DIG_EINVAL, "%s:%d: %s%s%s, expected YAML", path, line,
                          parser->context != NULL ? parser->context : "",
                          parser->context != NULL ? ": " : "",

@@ -37,11 +37,7 @@ static enum dig_status check_scene(const char *const path, const struct dig_conf
             set->scene_name, scene, machine_read->name, machine, 100.0 * DIG_SHAPE_TOLERANCE);
     }
     for (size_t i = 0; i < config->identify_trajectories; i++) {
-        bool found = false;
-        for (size_t t = 0; t < set->trajectories; t++) {
-            found |= strcmp(config->identify_trajectory[i], set->trajectory[t].name) == 0;
-        }
-        if (!found) {
+        if (dig_curve_set_find(set, config->identify_trajectory[i]) < 0) {
             return dig_yaml_refuse(
                 path, error, "identify.trajectories: \"%s\", expected a trajectory of the table",
                 config->identify_trajectory[i]);

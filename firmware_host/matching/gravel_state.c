@@ -116,12 +116,9 @@ static void take_pool(const struct dig_curve_set *const set,
     pool->digs = 0;
     for (size_t i = 0; i < identity->recorded && i < DIG_POOL_MAX; i++) {
         const struct dig_identity_dig *const from = &identity->recording[i];
-        struct dig_observation               dig  = { .trajectory = -1 };
-        for (size_t t = 0; t < set->trajectories; t++) {
-            if (strcmp(set->trajectory[t].name, from->trajectory) == 0) {
-                dig.trajectory = (int)t;
-            }
-        }
+        struct dig_observation               dig  = {
+                           .trajectory = dig_curve_set_find(set, from->trajectory),
+        };
         memcpy(dig.moment_Nm, from->moment_Nm, sizeof dig.moment_Nm);
         memcpy(dig.sigma_Nm, from->sigma_Nm, sizeof dig.sigma_Nm);
         memcpy(dig.force_N, from->force_N, sizeof dig.force_N);

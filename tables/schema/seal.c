@@ -90,22 +90,15 @@ static enum dig_status sum_of(const struct sealer *const s, const sqlite3_int64 
                               const sqlite3_int64 trajectory, sqlite3_int64 *const sum)
 {
     struct dig_sha256 hash;
-    uint8_t           digest[32];
     dig_sha256_init(&hash);
     enum dig_status status = add_rows(s, s->entry, ground, trajectory, &hash);
     if (status == DIG_OK) {
         status = add_rows(s, s->runs, ground, trajectory, &hash);
     }
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        *sum = (sqlite3_int64)dig_sha256_finish_number(&hash);
     }
-    dig_sha256_finish(&hash, digest);
-    uint64_t bits = 0;
-    for (size_t i = 0; i < 8; i++) {
-        bits = bits << 8 | digest[i];
-    }
-    *sum = (sqlite3_int64)(bits >> 1);
-    return DIG_OK;
+    return status;
 }
 
 static enum dig_status write_one(const struct sealer *const s, const sqlite3_int64 ground,
