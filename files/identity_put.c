@@ -26,9 +26,11 @@ static void put_named(FILE *const to, const char *const name, const struct dig_g
     (void)fputs(",\n ", to);
 }
 
-static void put_numbers(FILE *const to, const char *const name, const double number[])
+// Behind what stands before, on a line of its own.
+static void put_numbers(FILE *const to, const char *const before, const char *const name,
+                        const double number[])
 {
-    (void)fprintf(to, "\n   \"%s\": [", name);
+    (void)fprintf(to, "%s\n   \"%s\": [", before, name);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         (void)fprintf(to, "%s%.7g", k == 0 ? "" : k % 16 == 0 ? ",\n    " : ", ", number[k]);
     }
@@ -37,14 +39,10 @@ static void put_numbers(FILE *const to, const char *const name, const double num
 
 static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
 {
-    (void)fputs(",\n   \"force\": {", to);
-    put_numbers(to, "x_N", dig->force_N[0]);
-    (void)fputs(",", to);
-    put_numbers(to, "z_N", dig->force_N[1]);
-    (void)fputs(",", to);
-    put_numbers(to, "sigma_x_N", dig->force_sigma_N[0]);
-    (void)fputs(",", to);
-    put_numbers(to, "sigma_z_N", dig->force_sigma_N[1]);
+    put_numbers(to, ",\n   \"force\": {", "x_N", dig->force_N[0]);
+    put_numbers(to, ",", "z_N", dig->force_N[1]);
+    put_numbers(to, ",", "sigma_x_N", dig->force_sigma_N[0]);
+    put_numbers(to, ",", "sigma_z_N", dig->force_sigma_N[1]);
     (void)fputs("}", to);
 }
 
@@ -60,15 +58,13 @@ static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
 {
     (void)fputs("{\"trajectory\": ", to);
     dig_text_put_json(to, dig->trajectory);
-    (void)fprintf(to, ", \"first\": %.9g, \"last\": %.9g,", dig->first, dig->last);
+    (void)fprintf(to, ", \"first\": %.9g, \"last\": %.9g", dig->first, dig->last);
     if (!dig_approach_is_plain(&dig->approach)) {
-        (void)fputs(" ", to);
+        (void)fputs(", ", to);
         put_approach(to, "", &dig->approach);
-        (void)fputs(",", to);
     }
-    put_numbers(to, "moment_Nm", dig->moment_Nm);
-    (void)fputs(",", to);
-    put_numbers(to, "sigma_Nm", dig->sigma_Nm);
+    put_numbers(to, ",", "moment_Nm", dig->moment_Nm);
+    put_numbers(to, ",", "sigma_Nm", dig->sigma_Nm);
     if (dig->forces) {
         put_forces(to, dig);
     }

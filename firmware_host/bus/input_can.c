@@ -93,15 +93,6 @@ static enum dig_status open_can(struct dig_input *const input, struct dig_error 
     return DIG_OK;
 }
 
-static void note(struct dig_input *const input, const char *const text)
-{
-    struct dig_log_line note = { "" };
-    if (text[0] != '\0') {
-        (void)snprintf(note.text, sizeof note.text, "%.40s: %.150s", input->name, text);
-    }
-    dig_latest_put(input->log, &note);
-}
-
 // Error frames of the controller. A daemon that only listens cannot restart a bus; the interface's
 // restart-ms does. It logs, counts, and continues when frames come again.
 static void take_error(struct dig_input *const input, const struct can_frame *const frame)
@@ -111,7 +102,12 @@ static void take_error(struct dig_input *const input, const struct can_frame *co
     atomic_fetch_add(&input->errors, 1);
     if (off && !s->off) {
         atomic_fetch_add(&input->bus_offs, 1);
-        note(input, "bus off (ip link set … type can restart-ms 100 lets it come back by itself)");
+        struct dig_error error;
+        (void)dig_error_set(&error, DIG_EIO,
+                            "%s: bus off (ip link set … type can restart-ms 100 lets it come back "
+                            "by itself)",
+                            input->name);
+        dig_input_log(input, &error);
     }
     s->off = s->off || off;
 }
@@ -139,7 +135,7 @@ static void take_frame(struct dig_input *const input, const struct can_frame *co
     }
     if (s->off) {
         s->off = false;
-        note(input, "");
+        dig_input_log(input, NULL);
     }
     atomic_fetch_add(&input->frames, 1);
     dig_input_put(input, &reading);
