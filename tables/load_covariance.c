@@ -105,6 +105,9 @@ static enum dig_status read_run(sqlite3_stmt *const s, const char *const path,
     if (dig_channels_sound((size_t)windows, value)) {
         status = dig_derive_run(&head->trajectory[trajectory], head->tooth_m, head->smooth_half_s,
                                 (size_t)windows, first_s, step_s, value, curve);
+        if (status != DIG_OK) {
+            (void)dig_error_set(error, status, "%s: no memory", path);
+        }
     } else {
         (void)dig_error_set(error, DIG_EINVAL,
                             "%s: run.curve: a number that is not finite, expected finite ones",
