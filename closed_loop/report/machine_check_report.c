@@ -68,38 +68,13 @@ void dig_machine_check_text(const struct dig_check_subject *const subject, FILE 
     }
 }
 
-// Names that programs read.
-static const char *question_name(const enum dig_check_question question)
-{
-    static const char *const name[DIG_CHECK_QUESTIONS] = {
-        [DIG_CHECK_TIMES] = "times",         [DIG_CHECK_MISSING] = "missing",
-        [DIG_CHECK_STUCK] = "stuck",         [DIG_CHECK_MOVES] = "moves",
-        [DIG_CHECK_RANGE] = "range",         [DIG_CHECK_DEGREES] = "degrees",
-        [DIG_CHECK_DIRECTION] = "direction", [DIG_CHECK_ZERO] = "zero",
-        [DIG_CHECK_CYLINDER] = "cylinder",   [DIG_CHECK_SIDES] = "sides",
-        [DIG_CHECK_UNIT] = "unit",           [DIG_CHECK_FACTOR] = "factor",
-        [DIG_CHECK_OFFSET] = "offset",       [DIG_CHECK_WEIGHT] = "weight",
-        [DIG_CHECK_DELAY] = "delay",         [DIG_CHECK_REST] = "rest",
-    };
-    return name[question];
-}
-
-static const char *of_name(const struct dig_check_item *const item)
-{
-    if (item->of < 0) {
-        return "all";
-    }
-    return item->question == DIG_CHECK_STUCK ? dig_signal_name((enum dig_signal)item->of)
-                                             : dig_joint_name((enum dig_joint)item->of);
-}
-
 static void put_item(FILE *const to, const struct dig_check_subject *const subject,
                      const struct dig_check_item *const item)
 {
     struct dig_check_words words;
     dig_check_say(subject, item, &words);
     (void)fprintf(to, "  {\"question\": \"%s\", \"of\": \"%s\", \"verdict\": \"%s\"",
-                  question_name(item->question), of_name(item),
+                  dig_check_question_name(item->question), dig_check_of_name(item),
                   dig_check_verdict_name(item->verdict));
     dig_json_member(to, ", ", "value", item->value);
     dig_json_member(to, ", ", "sigma", item->sigma);
@@ -114,7 +89,7 @@ static void put_item(FILE *const to, const struct dig_check_subject *const subje
     if (item->or_item >= 0) {
         const struct dig_check_item *const other = &subject->check->item[item->or_item];
         (void)fprintf(to, ", \"or\": {\"question\": \"%s\", \"of\": \"%s\"}",
-                      question_name(other->question), of_name(other));
+                      dig_check_question_name(other->question), dig_check_of_name(other));
     }
     (void)fputs(", \"text\": ", to);
     dig_json_string(to, words.question);

@@ -30,6 +30,12 @@ void dig_check_say(const struct dig_check_subject *subject, const struct dig_che
 /// "ok", "not told", "doubtful", "wrong".
 const char *dig_check_verdict_name(enum dig_check_verdict verdict);
 
+/// "times", "missing", …, for programs.
+const char *dig_check_question_name(enum dig_check_question question);
+
+/// The joint or the signal that a line is of, or "all".
+const char *dig_check_of_name(const struct dig_check_item *item);
+
 /// The whole in one sentence of at most size - 1 characters.
 void dig_check_sentence(const struct dig_check_subject *subject, size_t size, char text[]);
 

@@ -12,6 +12,38 @@
 
 static const double bar_Pa = 1e5;
 
+// A question's name for programs, what it asks, and what to do; figures come with the answer. What
+// is asked of a joint or a signal begins with its name.
+static const struct {
+    const char *name, *question, *todo;
+} questions[DIG_CHECK_QUESTIONS] = {
+    [DIG_CHECK_TIMES]     = { "times", "sample times",
+                              "a gap hides motion: look at logger and bus; 50 a second are needed" },
+    [DIG_CHECK_MISSING]   = { "missing", "readings there",
+                              "a sensor, its cable or the bus drops out" },
+    [DIG_CHECK_STUCK]     = { "stuck", " changes",
+                              "sensor or gateway stands; what it read there was left out" },
+    [DIG_CHECK_MOVES]     = { "moves", " moves", "" },
+    [DIG_CHECK_RANGE]     = { "range", " within its limits",
+                              "min_deg, max_deg, and the cylinder's lengths and pins" },
+    [DIG_CHECK_DEGREES]   = { "degrees", "angles are in radians",
+                              "scale: 0.0174533 in the signal map, or the DBC's unit" },
+    [DIG_CHECK_DIRECTION] = { "direction", " angle counts up", "" },
+    [DIG_CHECK_ZERO]      = { "zero", " angle reads more by", "" },
+    [DIG_CHECK_CYLINDER]  = { "cylinder", " pressures are its own",
+                              "exchange the cylinders in the signal map" },
+    [DIG_CHECK_SIDES]     = { "sides", " head is head", "" },
+    [DIG_CHECK_UNIT]      = { "unit", " pressures' unit", "" },
+    [DIG_CHECK_FACTOR]    = { "factor", " pressures read more by",
+                              "range of the transmitter under load, or scale in the signal map" },
+    [DIG_CHECK_OFFSET]    = { "offset", " head reads more by", "" },
+    [DIG_CHECK_WEIGHT]    = { "weight", " weighs more by", "" },
+    [DIG_CHECK_DELAY]     = { "delay", "pressures are late by",
+                              "delay_ms of the messages in the signal map" },
+    [DIG_CHECK_REST]      = { "rest", ": what is left",
+                              "not in this list: pins, lengths, friction, or it touched something" },
+};
+
 __attribute__((format(printf, 2, 3))) static void say(char              text[DIG_CHECK_TEXT_SIZE],
                                                       const char *const format, ...)
 {
@@ -37,41 +69,18 @@ const char *dig_check_verdict_name(const enum dig_check_verdict verdict)
     return name[verdict];
 }
 
-// One question each: what is asked, what is answered, what to do.
-typedef void sayer(const struct dig_check_subject *subject, const struct dig_check_item *item,
-                   struct dig_check_words *words);
-
-static const char *joint_of(const struct dig_check_item *const item)
+const char *dig_check_question_name(const enum dig_check_question question)
 {
-    return dig_joint_name((enum dig_joint)item->of);
+    return questions[question].name;
 }
 
-static void say_times(const struct dig_check_subject *const subject,
-                      const struct dig_check_item *const item, struct dig_check_words *const words)
+const char *dig_check_of_name(const struct dig_check_item *const item)
 {
-    (void)subject;
-    say(words->question, "sample times");
-    say(words->answer, "%.0f a second, largest gap %.3f s", item->value, item->tolerance);
-    say(words->todo, "a gap hides motion: look at logger and bus; 50 a second are needed");
-}
-
-static void say_missing(const struct dig_check_subject *const subject,
-                        const struct dig_check_item *const    item,
-                        struct dig_check_words *const         words)
-{
-    (void)subject;
-    say(words->question, "readings there");
-    say(words->answer, "%.1f %% missing, of the worst signal", 100.0 * item->value);
-    say(words->todo, "a sensor, its cable or the bus drops out");
-}
-
-static void say_stuck(const struct dig_check_subject *const subject,
-                      const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    say(words->question, "%s changes", dig_signal_name((enum dig_signal)item->of));
-    say(words->answer, "no: one value for %.1f s", item->value);
-    say(words->todo, "sensor or gateway stands; what it read there was left out");
+    if (item->of < 0) {
+        return "all";
+    }
+    return item->question == DIG_CHECK_STUCK ? dig_signal_name((enum dig_signal)item->of)
+                                             : dig_joint_name((enum dig_joint)item->of);
 }
 
 // Angles are shown as they are read best, which need not be how they stand in the recording.
@@ -90,43 +99,6 @@ static void say_reading(const struct dig_reading *const best, const int joint,
     }
 }
 
-static void say_moves(const struct dig_check_subject *const subject,
-                      const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    const double *const rad = subject->check->angles_rad[item->of];
-    char                read[DIG_CHECK_TEXT_SIZE];
-    say_reading(&subject->check->reading.best, item->of, read);
-    say(words->question, "%s moves", joint_of(item));
-    say(words->answer, "by %.0f deg, from %.0f to %.0f%s", degrees(item->value), degrees(rad[0]),
-        degrees(rad[1]), read);
-    say(words->todo, "move it by %.0f deg or more: nothing of it is judged",
-        degrees(item->tolerance));
-}
-
-static void say_range(const struct dig_check_subject *const subject,
-                      const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    say(words->question, "%s within its limits", joint_of(item));
-    if (item->value > 0.0) {
-        say(words->answer, "%.1f deg beyond (allowed %.1f)", degrees(item->value),
-            degrees(item->tolerance));
-    } else {
-        say(words->answer, "yes");
-    }
-    say(words->todo, "min_deg, max_deg, and the cylinder's lengths and pins");
-}
-
-static void say_degrees(const struct dig_check_subject *const subject,
-                        const struct dig_check_item *const    item,
-                        struct dig_check_words *const         words)
-{
-    (void)subject;
-    say(words->question, "angles are in radians");
-    say(words->answer, item->verdict == DIG_CHECK_OK ? "yes" : "no: in degrees");
-    say(words->todo, "scale: 0.0174533 in the signal map, or the DBC's unit");
-}
-
 // How a discrete answer stands against the other.
 static void say_choice(const struct dig_check_item *const item, const char *const no,
                        char answer[DIG_CHECK_TEXT_SIZE])
@@ -140,50 +112,6 @@ static void say_choice(const struct dig_check_item *const item, const char *cons
     } else {
         say(answer, "no: %s, by %.0f sigma", no, item->excess);
     }
-}
-
-static void say_direction(const struct dig_check_subject *const subject,
-                          const struct dig_check_item *const    item,
-                          struct dig_check_words *const         words)
-{
-    (void)subject;
-    say(words->question, "%s angle counts up", joint_of(item));
-    say_choice(item, "it counts down", words->answer);
-    say(words->todo, "sign: -1 of %s_rad in the signal map, or 1 where it is -1", joint_of(item));
-}
-
-static void say_cylinder(const struct dig_check_subject *const subject,
-                         const struct dig_check_item *const    item,
-                         struct dig_check_words *const         words)
-{
-    (void)subject;
-    char no[DIG_CHECK_TEXT_SIZE];
-    say(words->question, "%s pressures are its own", joint_of(item));
-    say(no, "in the %s's columns", dig_joint_name((enum dig_joint)item->answer));
-    say_choice(item, no, words->answer);
-    say(words->todo, "exchange the cylinders in the signal map");
-}
-
-static void say_sides(const struct dig_check_subject *const subject,
-                      const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    say(words->question, "%s head is head", joint_of(item));
-    say_choice(item, "head and rod exchanged", words->answer);
-    say(words->todo, "exchange %s_head_Pa and %s_rod_Pa in the signal map", joint_of(item),
-        joint_of(item));
-}
-
-static void say_unit(const struct dig_check_subject *const subject,
-                     const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    char no[DIG_CHECK_TEXT_SIZE];
-    say(words->question, "%s pressures' unit", joint_of(item));
-    say(no, "%.6g times as much", item->value);
-    say_choice(item, no, words->answer);
-    say(words->todo, "unit or scale of %s_head_Pa and %s_rod_Pa: times %.6g", joint_of(item),
-        joint_of(item), item->value);
 }
 
 // "+4.00 +-0.18 deg (allowed 0.50)"
@@ -200,86 +128,100 @@ static void say_figure(const struct dig_check_item *const item, const double uni
     }
 }
 
-static void say_zero(const struct dig_check_subject *const subject,
-                     const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    say(words->question, "%s angle reads more by", joint_of(item));
-    say_figure(item, DIG_RAD_PER_DEG, 2, "deg", words->answer);
-    // The map adds the offset before it turns the sign.
-    say(words->todo, "offset of %s_rad in the signal map: %+.4f rad more; with sign: -1, %+.4f",
-        joint_of(item), -item->value, item->value);
-}
-
-static void say_factor(const struct dig_check_subject *const subject,
+// The answer, and what to do where that has figures.
+static void say_answer(const struct dig_check_subject *const subject,
                        const struct dig_check_item *const item, struct dig_check_words *const words)
 {
-    (void)subject;
-    say(words->question, "%s pressures read more by", joint_of(item));
-    say_figure(item, 0.01, 1, "%", words->answer);
-    say(words->todo, "range of the transmitter under load, or scale in the signal map");
-}
-
-static void say_offset(const struct dig_check_subject *const subject,
-                       const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    say(words->question, "%s head reads more by", joint_of(item));
-    say_figure(item, bar_Pa, 2, "bar", words->answer);
-    say(words->todo,
-        "transmitter; or in the signal map, offset of %s_head_Pa %+.3g Pa more, or of %s_rod_Pa "
-        "%+.3g: see which is not 0 without pressure",
-        joint_of(item), -item->value, joint_of(item), -item->at_rod);
-}
-
-static void say_weight(const struct dig_check_subject *const subject,
-                       const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    say(words->question, "%s weighs more by", joint_of(item));
-    say_figure(item, 1.0, 0, "kg", words->answer);
-    say(words->todo, "weigh it, or mass_kg: %.0f, or another com_m",
-        subject->machine->link[item->of].mass_kg + item->value);
-}
-
-static void say_delay(const struct dig_check_subject *const subject,
-                      const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    (void)subject;
-    say(words->question, "pressures are late by");
-    say_figure(item, 1e-3, 0, "ms", words->answer);
-    say(words->todo, "delay_ms of the messages in the signal map");
-}
-
-static void say_rest(const struct dig_check_subject *const subject,
-                     const struct dig_check_item *const item, struct dig_check_words *const words)
-{
-    say(words->question, "%s: what is left", joint_of(item));
-    if (isfinite(item->value)) {
-        say(words->answer, "%.2f sigma (was %.2f), %.1f %% of its load", item->value,
-            subject->check->rest_plain[item->of], 100.0 * item->share);
-    } else {
-        say(words->answer, "not judged: no pressures");
+    const char *const joint  = dig_check_of_name(item);
+    char *const       answer = words->answer;
+    char *const       todo   = words->todo;
+    char              part[DIG_CHECK_TEXT_SIZE];
+    switch (item->question) {
+    case DIG_CHECK_TIMES:
+        say(answer, "%.0f a second, largest gap %.3f s", item->value, item->tolerance);
+        break;
+    case DIG_CHECK_MISSING:
+        say(answer, "%.1f %% missing, of the worst signal", 100.0 * item->value);
+        break;
+    case DIG_CHECK_STUCK: say(answer, "no: one value for %.1f s", item->value); break;
+    case DIG_CHECK_MOVES:
+        say_reading(&subject->check->reading.best, item->of, part);
+        say(answer, "by %.0f deg, from %.0f to %.0f%s", degrees(item->value),
+            degrees(subject->check->angles_rad[item->of][0]),
+            degrees(subject->check->angles_rad[item->of][1]), part);
+        say(todo, "move it by %.0f deg or more: nothing of it is judged", degrees(item->tolerance));
+        break;
+    case DIG_CHECK_RANGE:
+        if (item->value > 0.0) {
+            say(answer, "%.1f deg beyond (allowed %.1f)", degrees(item->value),
+                degrees(item->tolerance));
+        } else {
+            say(answer, "yes");
+        }
+        break;
+    case DIG_CHECK_DEGREES:
+        say(answer, item->verdict == DIG_CHECK_OK ? "yes" : "no: in degrees");
+        break;
+    case DIG_CHECK_DIRECTION:
+        say_choice(item, "it counts down", answer);
+        say(todo, "sign: -1 of %s_rad in the signal map, or 1 where it is -1", joint);
+        break;
+    case DIG_CHECK_CYLINDER:
+        say(part, "in the %s's columns", dig_joint_name((enum dig_joint)item->answer));
+        say_choice(item, part, answer);
+        break;
+    case DIG_CHECK_SIDES:
+        say_choice(item, "head and rod exchanged", answer);
+        say(todo, "exchange %s_head_Pa and %s_rod_Pa in the signal map", joint, joint);
+        break;
+    case DIG_CHECK_UNIT:
+        say(part, "%.6g times as much", item->value);
+        say_choice(item, part, answer);
+        say(todo, "unit or scale of %s_head_Pa and %s_rod_Pa: times %.6g", joint, joint,
+            item->value);
+        break;
+    case DIG_CHECK_ZERO:
+        say_figure(item, DIG_RAD_PER_DEG, 2, "deg", answer);
+        // The map adds the offset before it turns the sign.
+        say(todo, "offset of %s_rad in the signal map: %+.4f rad more; with sign: -1, %+.4f", joint,
+            -item->value, item->value);
+        break;
+    case DIG_CHECK_FACTOR: say_figure(item, 0.01, 1, "%", answer); break;
+    case DIG_CHECK_OFFSET:
+        say_figure(item, bar_Pa, 2, "bar", answer);
+        say(todo,
+            "transmitter; or in the signal map, offset of %s_head_Pa %+.3g Pa more, or of "
+            "%s_rod_Pa %+.3g: see which is not 0 without pressure",
+            joint, -item->value, joint, -item->at_rod);
+        break;
+    case DIG_CHECK_WEIGHT:
+        say_figure(item, 1.0, 0, "kg", answer);
+        say(todo, "weigh it, or mass_kg: %.0f, or another com_m",
+            subject->machine->link[item->of].mass_kg + item->value);
+        break;
+    case DIG_CHECK_DELAY: say_figure(item, 1e-3, 0, "ms", answer); break;
+    case DIG_CHECK_REST:
+        if (isfinite(item->value)) {
+            say(answer, "%.2f sigma (was %.2f), %.1f %% of its load", item->value,
+                subject->check->rest_plain[item->of], 100.0 * item->share);
+        } else {
+            say(answer, "not judged: no pressures");
+        }
+        break;
+    case DIG_CHECK_QUESTIONS: break;
     }
-    say(words->todo, "not in this list: pins, lengths, friction, or it touched something");
 }
 
 void dig_check_say(const struct dig_check_subject *const subject,
                    const struct dig_check_item *const item, struct dig_check_words *const words)
 {
     assert(subject != NULL && item != NULL && words != NULL);
-    static sayer *const of[DIG_CHECK_QUESTIONS] = {
-        [DIG_CHECK_TIMES] = say_times,         [DIG_CHECK_MISSING] = say_missing,
-        [DIG_CHECK_STUCK] = say_stuck,         [DIG_CHECK_MOVES] = say_moves,
-        [DIG_CHECK_RANGE] = say_range,         [DIG_CHECK_DEGREES] = say_degrees,
-        [DIG_CHECK_DIRECTION] = say_direction, [DIG_CHECK_ZERO] = say_zero,
-        [DIG_CHECK_CYLINDER] = say_cylinder,   [DIG_CHECK_SIDES] = say_sides,
-        [DIG_CHECK_UNIT] = say_unit,           [DIG_CHECK_FACTOR] = say_factor,
-        [DIG_CHECK_OFFSET] = say_offset,       [DIG_CHECK_WEIGHT] = say_weight,
-        [DIG_CHECK_DELAY] = say_delay,         [DIG_CHECK_REST] = say_rest,
-    };
-    *words = (struct dig_check_words){ .todo = "" };
-    of[item->question](subject, item, words);
     const bool open = item->verdict == DIG_CHECK_UNTOLD && item->question != DIG_CHECK_MOVES;
+    *words          = (struct dig_check_words){ .todo = "" };
+    say(words->question, "%s%s", item->of < 0 ? "" : dig_check_of_name(item),
+        questions[item->question].question);
+    say(words->todo, "%s", questions[item->question].todo);
+    say_answer(subject, item, words);
     if (item->verdict == DIG_CHECK_OK || open) {
         words->todo[0] = '\0';
     }
