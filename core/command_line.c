@@ -1,6 +1,7 @@
 #include "core/command_line.h"
 
 #include "core/did_you_mean.h"
+#include "core/text.h"
 
 #include <assert.h>
 #include <getopt.h>
@@ -25,12 +26,11 @@ const struct dig_command *dig_command_find(const struct dig_program *const progr
             return &program->command[i];
         }
         dig_guess_try(&guess, known);
-        const size_t used = strlen(list);
-        (void)snprintf(list + used, sizeof list - used, "%s%s",
-                       i == 0                       ? ""
-                       : i + 1 == program->commands ? " or "
-                                                    : ", ",
-                       known);
+        dig_text_add(sizeof list, list, "%s%s",
+                     i == 0                       ? ""
+                     : i + 1 == program->commands ? " or "
+                                                  : ", ",
+                     known);
     }
     char text[DIG_GUESS_SIZE];
     if (name == NULL) {

@@ -76,9 +76,18 @@ void dig_text_copy(const size_t size, char to[], const char *const text)
 void dig_text_list(const size_t size, char list[], const char *const word)
 {
     assert(list != NULL && word != NULL);
-    const size_t used = strlen(list);
+    dig_text_add(size, list, "%s%s", list[0] == '\0' ? "" : ", ", word);
+}
+
+void dig_text_add(const size_t size, char text[], const char *const format, ...)
+{
+    assert(text != NULL && format != NULL);
+    const size_t used = strlen(text);
     assert(used < size);
-    (void)snprintf(list + used, size - used, "%s%s", used == 0 ? "" : ", ", word);
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(text + used, size - used, format, args);
+    va_end(args);
 }
 
 bool dig_text_number(const char *const text, double *const value)

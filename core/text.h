@@ -30,6 +30,10 @@ bool dig_text_number(const char *text, double *value);
 /// The line, from 1, on which byte `at` of a text stands.
 int dig_text_line(const char *text, size_t at);
 
+/// Puts what fprintf() would print at the end of text; cut to size.
+__attribute__((format(printf, 3, 4))) void dig_text_add(size_t size, char text[],
+                                                        const char *format, ...);
+
 /// text as dig_text_clean() makes it, and in one line: a line break or a tab becomes '?', too.
 void dig_text_put(FILE *to, const char *text);
 

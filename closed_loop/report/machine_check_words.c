@@ -3,12 +3,12 @@
 #include "closed_loop/report/machine_check_report.h"
 
 #include "core/sample.h"
+#include "core/text.h"
 #include "core/units.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdarg.h>
-#include <string.h>
 
 static const double bar_Pa = 1e5;
 
@@ -227,13 +227,6 @@ void dig_check_say(const struct dig_check_subject *const subject,
     }
 }
 
-// Adds to a list, "a, b, c".
-static void list(const size_t size, char text[], const char *const before, const char *const what)
-{
-    const size_t used = strlen(text);
-    (void)snprintf(text + used, size - used, "%s%s", before, what);
-}
-
 // What would do in its place.
 static void list_other(const struct dig_check_subject *const subject,
                        const struct dig_check_item *const item, const size_t size, char text[])
@@ -241,8 +234,7 @@ static void list_other(const struct dig_check_subject *const subject,
     if (item->or_item >= 0) {
         struct dig_check_words other;
         dig_check_say(subject, &subject->check->item[item->or_item], &other);
-        list(size, text, ", or ", other.question);
-        list(size, text, ": ", other.answer);
+        dig_text_add(size, text, ", or %s: %s", other.question, other.answer);
     }
 }
 
@@ -258,8 +250,8 @@ static size_t list_lines(const struct dig_check_subject *const subject,
         if (item->verdict == verdict && !told) {
             dig_check_say(subject, item, &words);
             if (text != NULL) {
-                list(size, text, n > 0 ? "; " : "", words.question);
-                list(size, text, ": ", words.answer);
+                dig_text_add(size, text, "%s%s: %s", n > 0 ? "; " : "", words.question,
+                             words.answer);
                 list_other(subject, item, size, text);
             }
             n++;
@@ -277,30 +269,29 @@ void dig_check_sentence(const struct dig_check_subject *const subject, const siz
     const size_t untold   = list_lines(subject, DIG_CHECK_UNTOLD, 0, NULL);
     (void)snprintf(text, size, "%s", subject->machine->name);
     if (wrong == 0 && doubtful == 0) {
-        list(size, text, " ", "fits this recording in free air");
+        dig_text_add(size, text, " fits this recording in free air");
     }
     if (subject->check->unexplained) {
-        list(size, text, ": ",
-             "no answer to these questions explains this recording. Was the bucket in free air all "
-             "the time");
-        list(size, text, "? ", "");
+        dig_text_add(size, text,
+                     ": no answer to these questions explains this recording. Was the bucket in "
+                     "free air all the time? ");
     } else if (wrong > 0) {
-        list(size, text, " ", "does not fit this recording. ");
+        dig_text_add(size, text, " does not fit this recording. ");
     }
     if (wrong > 0) {
-        list(size, text, "", "Wrong: ");
+        dig_text_add(size, text, "Wrong: ");
         (void)list_lines(subject, DIG_CHECK_WRONG, size, text);
     }
     // Of what is not explained the doubtful answers are as good as none.
     if (doubtful > 0 && !subject->check->unexplained) {
-        list(size, text, wrong > 0 ? ". " : " fits this recording but for what is doubtful: ",
-             wrong > 0 ? "Doubtful: " : "");
+        dig_text_add(size, text,
+                     wrong > 0 ? ". Doubtful: "
+                               : " fits this recording but for what is doubtful: ");
         (void)list_lines(subject, DIG_CHECK_DOUBTFUL, size, text);
     }
     if (untold > 0) {
-        const size_t used = strlen(text);
-        (void)snprintf(text + used, size - used, "; %zu question%s not told", untold,
-                       untold == 1 ? " is" : "s are");
+        dig_text_add(size, text, "; %zu question%s not told", untold,
+                     untold == 1 ? " is" : "s are");
     }
-    list(size, text, "", ".");
+    dig_text_add(size, text, ".");
 }

@@ -3,11 +3,11 @@
 #include "closed_loop/report/json.h"
 #include "closed_loop/report/residual_report.h"
 #include "closed_loop/verdict/tell_apart.h"
+#include "core/text.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 static void put_parameters(FILE *const to, const size_t n,
@@ -186,50 +186,40 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
                 to);
 }
 
-// Appends, as far as there is room.
-__attribute__((format(printf, 3, 4))) static void add(char *const text, const size_t size,
-                                                      const char *const format, ...)
-{
-    const size_t used = strlen(text);
-    va_list      arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
-}
-
 void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, char text[])
 {
     assert(trace != NULL && text != NULL && size > 0);
     text[0] = '\0';
     if (trace->effects == 0) {
-        add(text, size, "%s",
+        dig_text_add(
+            size, text, "%s",
             trace->significant ? "Something is missing, but none of the effects known explains it."
             : trace->no_air    ? "Nothing is missing in the soil; no free air tells of the machine."
                                : "Nothing is missing: what is left is within the noise.");
         return;
     }
-    add(text, size, "Missing: ");
+    dig_text_add(size, text, "Missing: ");
     for (size_t e = 0; e < trace->effects; e++) {
         const struct dig_model_effect *const effect = &trace->effect[e];
         if (e > 0) {
-            add(text, size, "%s", e + 1 == trace->effects ? "; and " : "; ");
+            dig_text_add(size, text, "%s", e + 1 == trace->effects ? "; and " : "; ");
         }
         if (effect->effect == DIG_EFFECT_UNLISTED) {
-            add(text, size, "an effect that has no name here");
+            dig_text_add(size, text, "an effect that has no name here");
             if (trace->unlisted != NULL && trace->unlisted->depends_on[0] != '\0') {
-                add(text, size, ", which depends on %s", trace->unlisted->depends_on);
+                dig_text_add(size, text, ", which depends on %s", trace->unlisted->depends_on);
             }
         } else {
-            add(text, size, "%s", dig_effect_name(effect->effect));
+            dig_text_add(size, text, "%s", dig_effect_name(effect->effect));
         }
-        add(text, size, " (probability %.2f, seen in %s)", effect->probability,
-            trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
-                                                 : dig_part_name(trace->seen_in[e]));
+        dig_text_add(size, text, " (probability %.2f, seen in %s)", effect->probability,
+                     trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
+                                                          : dig_part_name(trace->seen_in[e]));
         if (effect->effect != DIG_EFFECT_UNLISTED) {
-            add(text, size, ": %s", dig_effect_of(effect->effect)->summary);
+            dig_text_add(size, text, ": %s", dig_effect_of(effect->effect)->summary);
         }
     }
-    add(text, size, ".");
+    dig_text_add(size, text, ".");
 }
 
 void dig_trace_not_applied(const struct dig_trace *const trace, const size_t size, char text[])
@@ -239,11 +229,12 @@ void dig_trace_not_applied(const struct dig_trace *const trace, const size_t siz
     if (trace->applied || trace->effects == 0) {
         return;
     }
-    add(text, size, "named, not applied: ");
+    dig_text_add(size, text, "named, not applied: ");
     for (size_t e = 0; e < trace->effects; e++) {
-        add(text, size, "%s%s", e == 0 ? "" : ", ", dig_effect_name(trace->effect[e].effect));
+        dig_text_add(size, text, "%s%s", e == 0 ? "" : ", ",
+                     dig_effect_name(trace->effect[e].effect));
     }
-    add(text, size, "; the prediction is not surely better for it, and stays as it was");
+    dig_text_add(size, text, "; the prediction is not surely better for it, and stays as it was");
 }
 
 // An interval is drawn from recordings: of one there is none.

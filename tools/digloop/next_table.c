@@ -1,6 +1,7 @@
 #include "tools/digloop/next_table.h"
 
 #include "core/shell.h"
+#include "core/text.h"
 #include "estimator/effects/effect.h"
 #include "files/campaign_yaml.h"
 #include "files/scene_yaml.h"
@@ -9,7 +10,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,23 +21,12 @@ struct work {
     struct dig_scene    own, file, varied; // the table's, a file's, with an effect in it
 };
 
-// Appends, as far as there is room.
-__attribute__((format(printf, 2, 3))) static void add(struct dig_trace *const trace,
-                                                      const char *const       format, ...)
-{
-    const size_t used = strlen(trace->command);
-    va_list      arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(trace->command + used, sizeof trace->command - used, format, arguments);
-    va_end(arguments);
-}
-
 // A path as a word of a shell, and never an option.
-static void add_path(struct dig_trace *const trace, const char *const path)
+static void add_path(const size_t size, char text[], const char *const path)
 {
-    add(trace, "%s", path[0] == '-' ? "./" : "");
-    const size_t used = strlen(trace->command);
-    (void)dig_shell_word(path, sizeof trace->command - used, trace->command + used);
+    dig_text_add(size, text, "%s", path[0] == '-' ? "./" : "");
+    const size_t used = strlen(text);
+    (void)dig_shell_word(path, size - used, text + used);
 }
 
 // Three digits: what is behind them no fit knows.
@@ -87,41 +76,42 @@ static bool find_scene(const struct dig_curve_set *const set, const char *const 
 }
 
 static void add_trajectories(const struct dig_curve_set *const set, const size_t digs,
-                             const struct dig_measured measured[], struct dig_trace *const trace)
+                             const struct dig_measured measured[], const size_t size, char text[])
 {
     bool dug[DIG_TRAJECTORY_MAX] = { false };
     bool first                   = true;
     for (size_t i = 0; i < digs; i++) {
         dug[measured[i].trajectory] = true;
     }
-    add(trace, "trajectories: [");
+    dig_text_add(size, text, "trajectories: [");
     for (size_t t = 0; t < set->trajectories; t++) {
         if (dug[t]) {
-            add(trace, "%s%s", first ? "" : ", ", set->trajectory[t].name);
+            dig_text_add(size, text, "%s%s", first ? "" : ", ", set->trajectory[t].name);
             first = false;
         }
     }
-    add(trace, "]\n");
+    dig_text_add(size, text, "]\n");
 }
 
 static void add_grid(const struct dig_curve_set *const set, const size_t digs,
-                     const struct dig_measured measured[], struct work *const w,
-                     struct dig_trace *const trace)
+                     const struct dig_measured measured[], const struct dig_trace *const trace,
+                     struct work *const w, const size_t size, char text[])
 {
-    add(trace, "cat >effects_grid.yaml <<'END'\npoints:\n  - {friction: %.3g, rolling: %.3g, ",
-        trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING]);
-    add(trace, "density_kgpm3: %.0f, packings: %d}\n", trace->gravel.value[DIG_AXIS_DENSITY_kgpm3],
-        PACKINGS);
-    add_trajectories(set, digs, measured, trace);
-    add(trace, "effects:\n");
+    dig_text_add(size, text,
+                 "cat >effects_grid.yaml <<'END'\npoints:\n  - {friction: %.3g, rolling: %.3g, ",
+                 trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING]);
+    dig_text_add(size, text, "density_kgpm3: %.0f, packings: %d}\n",
+                 trace->gravel.value[DIG_AXIS_DENSITY_kgpm3], PACKINGS);
+    add_trajectories(set, digs, measured, size, text);
+    dig_text_add(size, text, "effects:\n");
     for (size_t e = 0; e < trace->effects; e++) {
         double magnitude;
         if (magnitude_of(&trace->effect[e], w, &magnitude)) {
-            add(trace, "  - {name: %s, magnitudes: [%.6g]}\n",
-                dig_effect_name(trace->effect[e].effect), magnitude);
+            dig_text_add(size, text, "  - {name: %s, magnitudes: [%.6g]}\n",
+                         dig_effect_name(trace->effect[e].effect), magnitude);
         }
     }
-    add(trace, "END\n");
+    dig_text_add(size, text, "END\n");
 }
 
 enum dig_status digloop_next_table(const struct digloop_options *const options,
@@ -142,23 +132,26 @@ enum dig_status digloop_next_table(const struct digloop_options *const options,
         held += magnitude_of(&trace->effect[e], w, &magnitude) ? 1 : 0;
     }
     if (held > 0) {
-        char       scene[DIGLOOP_PATH_SIZE];
-        const bool known  = find_scene(set, options->recording[0], w, sizeof scene, scene);
-        trace->command[0] = '\0';
-        add_grid(set, digs, measured, w, trace);
+        char         scene[DIGLOOP_PATH_SIZE];
+        char *const  text  = trace->command;
+        const size_t size  = sizeof trace->command;
+        const bool   known = find_scene(set, options->recording[0], w, sizeof scene, scene);
+        text[0]            = '\0';
+        add_grid(set, digs, measured, trace, w, size, text);
         if (!known) {
-            add(trace, "# SCENE.yaml: the scene \"%s\" that the table was computed in\n",
-                w->own.name);
+            dig_text_add(size, text,
+                         "# SCENE.yaml: the scene \"%s\" that the table was computed in\n",
+                         w->own.name);
         }
-        add(trace, "digtable generate ");
-        add_path(trace, known ? scene : "SCENE.yaml");
-        add(trace, " effects_grid.yaml -o ");
-        add_path(trace, effects);
-        add(trace, "\n");
+        dig_text_add(size, text, "digtable generate ");
+        add_path(size, text, known ? scene : "SCENE.yaml");
+        dig_text_add(size, text, " effects_grid.yaml -o ");
+        add_path(size, text, effects);
+        dig_text_add(size, text, "\n");
 
         // Of a line that was cut a shell would make something else.
-        if (strlen(trace->command) + 1 == sizeof trace->command) {
-            trace->command[0] = '\0';
+        if (strlen(text) + 1 == size) {
+            text[0] = '\0';
         }
     }
     free(w);
