@@ -30,6 +30,14 @@ void dig_html_text(FILE *const to, const char *const text)
     }
 }
 
+void dig_html_between(FILE *const to, const char *const before, const char *const text,
+                      const char *const after)
+{
+    (void)fputs(before, to);
+    dig_html_text(to, text);
+    (void)fputs(after, to);
+}
+
 void dig_html_without_folders(FILE *const to, const char *const text)
 {
     assert(to != NULL && text != NULL);
@@ -88,13 +96,13 @@ static const char style[] =
 void dig_html_begin(FILE *const to, const char *const title)
 {
     assert(to != NULL && title != NULL);
-    (void)fputs("<!doctype html>\n<html lang=en><head><meta charset=utf-8>\n"
-                "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>",
-                to);
-    dig_html_text(to, title);
-    (void)fprintf(to, "</title>\n%s</head><body>\n<h1>", style);
-    dig_html_text(to, title);
-    (void)fputs("</h1>\n", to);
+    dig_html_between(
+        to,
+        "<!doctype html>\n<html lang=en><head><meta charset=utf-8>\n"
+        "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>",
+        title, "</title>\n");
+    (void)fputs(style, to);
+    dig_html_between(to, "</head><body>\n<h1>", title, "</h1>\n");
 }
 
 void dig_html_end(FILE *const to, const char *const note)

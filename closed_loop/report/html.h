@@ -9,7 +9,11 @@
 /// character or a byte that is not UTF-8 becomes U+FFFD. Every text on a page goes through here.
 void dig_html_text(FILE *to, const char *text);
 
-/// The same, without the folders of files that are named in it: they are somebody's machine.
+/// The same between two pieces of HTML, as "<p>" and "</p>\n".
+void dig_html_between(FILE *to, const char *before, const char *text, const char *after);
+
+/// As dig_html_text(), without the folders of files that are named in it: they are somebody's
+/// machine.
 void dig_html_without_folders(FILE *to, const char *text);
 
 /// A table's cell: the number, or a dash for none.

@@ -20,7 +20,9 @@ void dig_json_member(FILE *const to, const char *const before, const char *const
     dig_json_number(to, value);
 }
 
-void dig_json_string(FILE *const to, const char *const text)
+void dig_json_text(FILE *const to, const char *const before, const char *const name,
+                   const char *const text)
 {
+    (void)fprintf(to, "%s\"%s\": ", before, name);
     dig_text_put_json(to, text);
 }

@@ -5,7 +5,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { SENTENCE = 4000 };
 
@@ -20,19 +19,15 @@ static void put_row(FILE *const to, const struct dig_check_subject *const subjec
     dig_check_say(subject, item, &words);
     (void)fprintf(to, "<tr><td>%s%s%s</td><td>", loud ? "<b>" : "",
                   dig_check_verdict_name(item->verdict), loud ? "</b>" : "");
-    dig_html_text(to, words.question);
-    (void)fputs("</td><td>", to);
+    dig_html_between(to, "", words.question, "</td><td>");
     dig_html_text(to, words.answer);
     if (words.todo[0] != '\0') {
-        (void)fputs("<br>→ ", to);
-        dig_html_text(to, words.todo);
+        dig_html_between(to, "<br>→ ", words.todo, "");
     }
     if (item->or_item >= 0) {
         struct dig_check_words other;
         dig_check_say(subject, &subject->check->item[item->or_item], &other);
-        (void)fputs("<br>or ", to);
-        dig_html_text(to, other.question);
-        (void)fputs(": this recording cannot tell", to);
+        dig_html_between(to, "<br>or ", other.question, ": this recording cannot tell");
     }
     (void)fputs("</td></tr>\n", to);
 }
@@ -57,11 +52,30 @@ static void put_list(FILE *const to, const struct dig_check_subject *const subje
         to);
 }
 
-// One picture: what a drive pushed, and what it had to.
-static enum dig_status put_plot(FILE *const to, const char *const title, const size_t n,
-                                const double time_s[], const double drive_kN[],
-                                const double load_kN[], struct dig_error *const error)
+// What the drive of a joint pushed, and what it had to. room: of three curves.
+static enum dig_status put_joint(FILE *const to, const struct dig_check_curves *const curves,
+                                 const size_t joint, const double drive_N[], const double load_N[],
+                                 const char *const how, double room[],
+                                 struct dig_error *const error)
 {
+    const size_t  most     = curves->points / EVERY + 1;
+    double *const time_s   = room;
+    double *const drive_kN = room + most;
+    double *const load_kN  = room + 2 * most;
+    size_t        n        = 0;
+    bool          any      = false;
+    for (size_t p = 0; p < curves->points; p += EVERY, n++) {
+        time_s[n]   = curves->time_s[p] - curves->time_s[0];
+        drive_kN[n] = 1e-3 * drive_N[DIG_JOINTS * p + joint];
+        load_kN[n]  = 1e-3 * load_N[DIG_JOINTS * p + joint];
+        any         = any || isfinite(drive_kN[n]);
+    }
+    char title[DIG_CHECK_TEXT_SIZE];
+    (void)snprintf(title, sizeof title, "%s%s", dig_joint_name((enum dig_joint)joint), how);
+    if (!any) {
+        (void)fprintf(to, "<p>%s: no instant can be balanced.</p>\n", title);
+        return DIG_OK;
+    }
     const struct dig_plot plot = {
         .title   = title,
         .x_label = "time, s",
@@ -75,71 +89,26 @@ static enum dig_status put_plot(FILE *const to, const char *const title, const s
     return dig_plot_figure(&plot, to, error);
 }
 
-// Every so many points of one joint, in kN.
-static size_t thin(const struct dig_check_curves *const curves, const double N[],
-                   const size_t joint, double kN[])
-{
-    size_t n = 0;
-    for (size_t p = 0; p < curves->points; p += EVERY) {
-        kN[n++] = 1e-3 * N[DIG_JOINTS * p + joint];
-    }
-    return n;
-}
-
-static bool any(const size_t n, const double value[])
-{
-    bool there = false;
-    for (size_t i = 0; i < n; i++) {
-        there = there || isfinite(value[i]);
-    }
-    return there;
-}
-
-// Before, and after if that is not the same.
-static enum dig_status put_joint(FILE *const to, const struct dig_check_curves *const curves,
-                                 const size_t joint, const bool mended, double room[],
-                                 struct dig_error *const error)
-{
-    const size_t  most  = curves->points / EVERY + 1;
-    double *const time  = room;
-    double *const drive = room + most;
-    double *const load  = room + 2 * most;
-    size_t        n     = 0;
-    for (size_t p = 0; p < curves->points; p += EVERY) {
-        time[n++] = curves->time_s[p] - curves->time_s[0];
-    }
-    char            title[DIG_CHECK_TEXT_SIZE];
-    enum dig_status status = DIG_OK;
-    for (int after = 0; after <= (mended ? 1 : 0) && status == DIG_OK; after++) {
-        (void)thin(curves, after > 0 ? curves->mended_drive_N : curves->drive_N, joint, drive);
-        (void)thin(curves, after > 0 ? curves->mended_load_N : curves->load_N, joint, load);
-        (void)snprintf(title, sizeof title, "%s%s", dig_joint_name((enum dig_joint)joint),
-                       !mended     ? ""
-                       : after > 0 ? ", with what is wrong taken off"
-                                   : ", as it stands");
-        if (any(n, drive)) {
-            status = put_plot(to, title, n, time, drive, load, error);
-        } else {
-            (void)fprintf(to, "<p>%s: no instant can be balanced.</p>\n", title);
-        }
-    }
-    return status;
-}
-
+// Of each joint before, and after if that is not the same.
 static enum dig_status put_pictures(FILE *const to, const struct dig_check_subject *const subject,
                                     struct dig_error *const error)
 {
-    const struct dig_check_curves *const curves = &subject->check->curves;
+    const struct dig_check_curves *const c = &subject->check->curves;
 
     const bool      mended = subject->check->verdict >= DIG_CHECK_DOUBTFUL;
-    double *const   room   = malloc(3 * (curves->points / EVERY + 1) * sizeof *room);
+    double *const   room   = malloc(3 * (c->points / EVERY + 1) * sizeof *room);
     enum dig_status status = DIG_OK;
     if (room == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%zu points", curves->points);
+        return dig_error_set(error, DIG_ENOMEM, "%zu points", c->points);
     }
     (void)fputs("<h2>Measured against expected</h2>\n<div class=grid>\n", to);
     for (size_t j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        status = put_joint(to, curves, j, mended, room, error);
+        status =
+            put_joint(to, c, j, c->drive_N, c->load_N, mended ? ", as it stands" : "", room, error);
+        if (status == DIG_OK && mended) {
+            status = put_joint(to, c, j, c->mended_drive_N, c->mended_load_N,
+                               ", with what is wrong taken off", room, error);
+        }
     }
     (void)fputs(
         "</div>\n<p class=muted>Measured: by the two pressures of the whole drive. Expected: "
@@ -159,9 +128,7 @@ enum dig_status dig_machine_check_html(const struct dig_check_subject *const sub
     (void)snprintf(title, sizeof title, "%s in free air", subject->machine->name);
     dig_check_sentence(subject, sizeof sentence, sentence);
     dig_html_begin(to, title);
-    (void)fputs("<p class=result>", to);
-    dig_html_text(to, sentence);
-    (void)fputs("</p>\n<p>File ", to);
+    dig_html_between(to, "<p class=result>", sentence, "</p>\n<p>File ");
     dig_html_without_folders(to, subject->file);
     (void)fputs(", recording ", to);
     dig_html_without_folders(to, subject->recording);

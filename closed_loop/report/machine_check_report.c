@@ -91,12 +91,9 @@ static void put_item(FILE *const to, const struct dig_check_subject *const subje
         (void)fprintf(to, ", \"or\": {\"question\": \"%s\", \"of\": \"%s\"}",
                       dig_check_question_name(other->question), dig_check_of_name(other));
     }
-    (void)fputs(", \"text\": ", to);
-    dig_json_string(to, words.question);
-    (void)fputs(", \"answer\": ", to);
-    dig_json_string(to, words.answer);
-    (void)fputs(", \"todo\": ", to);
-    dig_json_string(to, words.todo);
+    dig_json_text(to, ", ", "text", words.question);
+    dig_json_text(to, ", ", "answer", words.answer);
+    dig_json_text(to, ", ", "todo", words.todo);
     (void)fputc('}', to);
 }
 
@@ -104,10 +101,8 @@ void dig_machine_check_json(const struct dig_check_subject *const subject, FILE 
 {
     assert(subject != NULL && to != NULL);
     const struct dig_machine_air_check *const check = subject->check;
-    (void)fputs("{\"machine\": ", to);
-    dig_json_string(to, subject->machine->name);
-    (void)fputs(",\n \"recording\": ", to);
-    dig_json_string(to, subject->recording);
+    dig_json_text(to, "{", "machine", subject->machine->name);
+    dig_json_text(to, ",\n ", "recording", subject->recording);
     dig_json_member(to, ",\n ", "duration_s", check->duration_s);
     (void)fprintf(to, ",\n \"verdict\": \"%s\",\n \"unexplained\": %s,\n \"items\": [\n",
                   dig_check_verdict_name(check->verdict), check->unexplained ? "true" : "false");

@@ -66,19 +66,19 @@ static void put_script(FILE *const to, const struct dig_plot *const plot, const 
 }
 
 // Runs gnuplot on the script, its standard output going to svg. -d: no start-up file of the user's.
-static enum dig_status run_gnuplot(const char *const script, FILE *const svg,
+static enum dig_status run_gnuplot(FILE *const script, FILE *const svg,
                                    struct dig_error *const error)
 {
     char                       program[] = "gnuplot";
     char                       option[]  = "-d";
-    char                       path[64];
-    char *const                argv[] = { program, option, path, NULL };
+    char                       path[]    = "/dev/stdin";
+    char *const                argv[]    = { program, option, path, NULL };
     posix_spawn_file_actions_t actions;
     pid_t                      child  = -1;
     int                        status = -1;
 
-    (void)snprintf(path, sizeof path, "%s", script);
     (void)posix_spawn_file_actions_init(&actions);
+    (void)posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
     (void)posix_spawn_file_actions_adddup2(&actions, fileno(svg), STDOUT_FILENO);
     (void)posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", 1, 0);
     const int failed = posix_spawnp(&child, program, &actions, NULL, argv, environ);
@@ -225,11 +225,9 @@ enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const t
     const unsigned above  = plot->title[0] == '\0' ? 0 : LINE;
     const unsigned below  = LINE + 4 + LINE * put_key(NULL, plot, width, 0);
 
-    char            path[]  = "/tmp/digsight-plot-XXXXXX";
-    enum dig_status status  = DIG_EIO;
-    const int       fd      = mkstemp(path);
-    FILE *const     script  = fd >= 0 ? fdopen(fd, "w") : NULL;
+    FILE *const     script  = tmpfile();
     FILE *const     drawing = script != NULL ? tmpfile() : NULL;
+    enum dig_status status  = DIG_EIO;
     if (drawing == NULL) {
         (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
         goto done;
@@ -237,10 +235,10 @@ enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const t
     put_script(script, plot, width - LEFT - (plot->right_label != NULL ? LEFT : 0),
                height - above - below);
     if (fflush(script) != 0) {
-        (void)dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+        (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
         goto done;
     }
-    status = run_gnuplot(path, drawing, error);
+    status = run_gnuplot(script, drawing, error);
     if (status == DIG_OK) {
         status = put_picture(plot, drawing, width, height, above, below, to, error);
     }
@@ -250,11 +248,6 @@ done:
     }
     if (script != NULL) {
         (void)fclose(script);
-    } else if (fd >= 0) {
-        (void)close(fd);
-    }
-    if (fd >= 0) {
-        (void)unlink(path);
     }
     return status;
 }

@@ -56,7 +56,7 @@ void dig_report_text(const struct dig_report *const report, FILE *const to)
 static void put_json_gravel(FILE *const to, const char *const name,
                             const struct dig_gravel *const gravel, const bool known)
 {
-    (void)fprintf(to, "\"%s\":", name);
+    (void)fprintf(to, ",\"%s\":", name);
     if (!known) {
         (void)fprintf(to, "null");
         return;
@@ -79,15 +79,10 @@ void dig_report_json(const struct dig_report *const report, FILE *const to)
         const struct dig_report_run *const run = &report->run[r];
         (void)fprintf(to, "%s{\"name\":", r == 0 ? "" : ",");
         dig_text_put_json(to, run->name);
-        (void)fprintf(to, ",");
         put_json_gravel(to, "truth", &run->truth, run->truth_known);
-        (void)fprintf(to, ",");
         put_json_gravel(to, "identified", &run->gravel, true);
-        (void)fprintf(to, ",");
         put_json_gravel(to, "low", &run->low, true);
-        (void)fprintf(to, ",");
         put_json_gravel(to, "high", &run->high, true);
-        (void)fprintf(to, ",");
         put_json_gravel(to, "nearest", &run->nearest, true);
         (void)fputs(",\"distance\":", to);
         dig_json_number(to, run->distance);
@@ -191,11 +186,8 @@ enum dig_status dig_report_html(const struct dig_report *const report, FILE *con
                   report->lambda, pow(report->lambda, 4.0));
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        (void)fputs("<h2>", to);
-        dig_html_text(to, run->name);
-        (void)fputs("</h2>\n<p>", to);
-        dig_html_text(to, run->dig);
-        (void)fputs("</p>\n", to);
+        dig_html_between(to, "<h2>", run->name, "</h2>\n");
+        dig_html_between(to, "<p>", run->dig, "</p>\n");
         put_table(to, run);
         (void)fputs("<div class=grid>\n", to);
         enum dig_status status =

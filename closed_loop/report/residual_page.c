@@ -11,7 +11,6 @@ static const char *const of_channel[DIG_FORCE_CHANNELS] = { "moment", "Fx", "Fz"
 // One line a dig and channel: sigmas by part, and the share of the whole dig before and after.
 static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
 {
-    static const char *const use[] = { "identify", "fit", "holdout" };
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         const struct dig_residual *const soil   = &dig->before[DIG_PART_SOIL][c];
         const struct dig_residual *const lifted = &dig->before[DIG_PART_LIFTED][c];
@@ -21,7 +20,7 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
         (void)fputs("<tr><th>", to);
         if (c == DIG_CHANNEL_MY_Nm) {
             dig_html_without_folders(to, dig->name);
-            (void)fprintf(to, "<br><span class=muted>%s</span>", use[dig->use]);
+            (void)fprintf(to, "<br><span class=muted>%s</span>", dig_residuals_use_name(dig->use));
         }
         (void)fprintf(to, "</th><td>%s</td>", of_channel[c]);
         dig_html_cell(to, 1, c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN);

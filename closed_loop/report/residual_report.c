@@ -4,7 +4,7 @@
 
 #include <assert.h>
 
-static const char *use_name(const enum dig_use use)
+const char *dig_residuals_use_name(const enum dig_use use)
 {
     static const char *const name[] = { "identify", "fit", "holdout" };
     return name[use];
@@ -28,11 +28,10 @@ static void put_residual(FILE *const to, const char *const name,
 
 static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
 {
-    (void)fputs("{\"file\": ", to);
-    dig_json_string(to, dig->name);
-    (void)fputs(", \"trajectory\": ", to);
-    dig_json_string(to, dig->trajectory);
-    (void)fprintf(to, ", \"role\": \"%s\", \"pass\": %u", use_name(dig->use), dig->pass);
+    dig_json_text(to, "{", "file", dig->name);
+    dig_json_text(to, ", ", "trajectory", dig->trajectory);
+    (void)fprintf(to, ", \"role\": \"%s\", \"pass\": %u", dig_residuals_use_name(dig->use),
+                  dig->pass);
     dig_json_member(to, ", \"air\": {", "sigmas", dig->air_sigmas);
     (void)fputs("}", to);
     for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {

@@ -9,6 +9,9 @@
 
 #include <stdio.h>
 
+/// "identify", "fit", "holdout".
+const char *dig_residuals_use_name(enum dig_use use);
+
 /// The members "residuals", "residual_against" and "whiteness" of the object, each with a comma and
 /// a line feed. NULL: empty lists and null.
 void dig_residuals_json(const struct dig_residuals *residuals, FILE *to);

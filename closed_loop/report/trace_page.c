@@ -10,10 +10,13 @@
 
 #define CANDIDATES_SHOWN 12
 
-struct page {
-    const struct dig_trace         *trace;
-    const struct dig_trace_subject *subject;
-};
+static void put_bar(FILE *const to, const double px)
+{
+    (void)fprintf(to,
+                  "<td style=\"text-align:left\"><span class=bar style=\"width:%.0fpx\"></span>"
+                  "</td></tr>\n",
+                  px);
+}
 
 static void put_error_row(FILE *const to, const char *const title, const double most,
                           const struct dig_error_range *const range)
@@ -24,10 +27,7 @@ static void put_error_row(FILE *const to, const char *const title, const double 
     } else {
         (void)fputs("<td></td>", to);
     }
-    (void)fprintf(
-        to,
-        "<td style=\"text-align:left\"><span class=bar style=\"width:%.0fpx\"></span></td></tr>\n",
-        150.0 * range->value / most);
+    put_bar(to, 150.0 * range->value / most);
 }
 
 static void put_errors(FILE *const to, const struct dig_trace *const trace)
@@ -87,9 +87,7 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
         char text[256];
         dig_trace_meaning(trace, e, sizeof text, text);
         if (text[0] != '\0') {
-            (void)fputs("<p>", to);
-            dig_html_text(to, text);
-            (void)fputs(".</p>\n", to);
+            dig_html_between(to, "<p>", text, ".</p>\n");
         }
     }
 }
@@ -121,10 +119,7 @@ static void put_residuals(FILE *const to, const struct dig_trace *const trace)
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         (void)fprintf(to, "<tr><th>%s</th>", title[p]);
         dig_html_cell(to, 2, trace->residual[p]);
-        (void)fprintf(to,
-                      "<td style=\"text-align:left\"><span class=bar style=\"width:%.0fpx\">"
-                      "</span></td></tr>\n",
-                      isfinite(trace->residual[p]) ? 150.0 * trace->residual[p] / most : 0.0);
+        put_bar(to, isfinite(trace->residual[p]) ? 150.0 * trace->residual[p] / most : 0.0);
     }
     (void)fprintf(
         to,
@@ -152,8 +147,7 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         dig_html_cell(to, 3, c->error);
         (void)fputs("<td style=\"text-align:left;min-width:15em\">", to);
         for (size_t p = 0; p < c->parameters; p++) {
-            (void)fprintf(to, "%s", p == 0 ? "" : ", ");
-            dig_html_text(to, c->parameter[p].name);
+            dig_html_between(to, p == 0 ? "" : ", ", c->parameter[p].name, "");
             (void)fprintf(to, " %.3g", c->parameter[p].value);
         }
         (void)fputs("</td></tr>\n", to);
@@ -197,7 +191,6 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
                                    const char *const trajectory, const double lambda,
                                    const size_t channel, struct dig_error *const error)
 {
-    static const char *const use[]                        = { "identify", "fit", "holdout" };
     static const char *const label[2][DIG_FORCE_CHANNELS] = {
         { "moment, N·m at rig scale", "Fx, N at rig scale", "Fz, N at rig scale" },
         { "moment, kN·m", "Fx, kN", "Fz, kN" },
@@ -213,8 +206,9 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
     const double       power  = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
     const double       unit   = scaled ? 1e-3 * pow(lambda, power) : 1.0;
     fill_picture(curves, dig, channel, unit, &p);
-    (void)snprintf(title, sizeof title, "%s: %s, %s%s%s", dig->name, trajectory, use[dig->use],
-                   dig->pass > 1 ? ", dug before" : "", of[channel]);
+    (void)snprintf(title, sizeof title, "%s: %s, %s%s%s", dig->name, trajectory,
+                   dig_residuals_use_name(dig->use), dig->pass > 1 ? ", dug before" : "",
+                   of[channel]);
     // Where nothing was changed before is after, and is drawn once.
     const bool same =
         // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
@@ -254,20 +248,20 @@ static enum dig_status put_dig(FILE *const to, const struct dig_trace_curves *co
     return status;
 }
 
-static enum dig_status put_digs(FILE *const to, const struct page *const page,
-                                struct dig_error *const error)
+static enum dig_status put_digs(FILE *const to, const struct dig_trace *const trace,
+                                const struct dig_trace_subject *const subject,
+                                struct dig_error *const               error)
 {
-    const struct dig_trace_subject *const subject = page->subject;
-    if (page->trace->curves == NULL || subject->measured == NULL || subject->set == NULL) {
+    if (trace->curves == NULL || subject->measured == NULL || subject->set == NULL) {
         return DIG_OK;
     }
     (void)fputs("<h2>Dig by dig</h2>\n<div class=grid>\n", to);
     enum dig_status status = DIG_OK;
-    for (size_t d = 0; d < page->trace->digs && d < subject->digs && status == DIG_OK; d++) {
+    for (size_t d = 0; d < trace->digs && d < subject->digs && status == DIG_OK; d++) {
         const struct dig_measured *const dig = &subject->measured[d];
         assert((size_t)dig->trajectory < subject->set->trajectories);
-        status = put_dig(to, &page->trace->curves[d], dig,
-                         subject->set->trajectory[dig->trajectory].name, subject->lambda, error);
+        status = put_dig(to, &trace->curves[d], dig, subject->set->trajectory[dig->trajectory].name,
+                         subject->lambda, error);
     }
     (void)fputs("</div>\n<p class=muted>Before: the table with the gravel alone refitted. After: "
                 "with what was found, and the band that holds 90 % of digs. Forces are drawn where "
@@ -289,8 +283,7 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
         const bool                         told = tell->how[0] != '\0';
         (void)fprintf(to, "<tr><th>%s<br>%s</th><td style=\"text-align:left;min-width:7em\">",
                       dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
-        dig_html_text(to, told ? tell->how : "nothing that was tried");
-        (void)fputs("</td>", to);
+        dig_html_between(to, "", told ? tell->how : "nothing that was tried", "</td>");
         dig_html_cell(to, 2, told ? tell->sigmas : (double)NAN);
         dig_html_cell(to, 0, told ? tell->repeats : (double)NAN);
         (void)fputs("</tr>\n", to);
@@ -301,22 +294,19 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
                 to);
 }
 
-static void put_next(FILE *const to, const struct page *const page)
+static void put_next(FILE *const to, const struct dig_trace *const trace)
 {
-    if (page->trace->advice[0] == '\0' && page->trace->command[0] == '\0' &&
-        page->trace->tells == 0) {
+    if (trace->advice[0] == '\0' && trace->command[0] == '\0' && trace->tells == 0) {
         return;
     }
     (void)fputs("<h2>What to do next</h2>\n", to);
-    if (page->trace->advice[0] != '\0') {
-        (void)fputs("<p>", to);
-        dig_html_text(to, page->trace->advice);
-        (void)fputs("</p>\n", to);
+    if (trace->advice[0] != '\0') {
+        dig_html_between(to, "<p>", trace->advice, "</p>\n");
     }
-    put_tells(to, page->trace);
-    if (page->trace->command[0] != '\0') {
+    put_tells(to, trace);
+    if (trace->command[0] != '\0') {
         (void)fputs("<p>A table with it in its beds:</p>\n<pre>", to);
-        dig_html_without_folders(to, page->trace->command);
+        dig_html_without_folders(to, trace->command);
         (void)fputs("</pre>\n", to);
     }
 }
@@ -327,12 +317,10 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
 {
     assert(trace != NULL && subject != NULL && to != NULL);
     assert(subject->campaign != NULL && subject->table != NULL);
-    const struct page        all  = { trace, subject };
-    const struct page *const page = &all;
-    char                     sentence[1024];
-    char                     title[256];
-    const char *const        campaign = page->subject->campaign;
-    size_t                   ends     = strlen(campaign);
+    char              sentence[1024];
+    char              title[256];
+    const char *const campaign = subject->campaign;
+    size_t            ends     = strlen(campaign);
     while (ends > 1 && campaign[ends - 1] == '/') {
         ends--;
     }
@@ -340,40 +328,37 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     while (begins > 0 && campaign[begins - 1] != '/') {
         begins--;
     }
-    dig_trace_sentence(page->trace, sizeof sentence, sentence);
+    dig_trace_sentence(trace, sizeof sentence, sentence);
     (void)snprintf(title, sizeof title, "What the model lacks: %.*s", (int)(ends - begins),
                    campaign + begins);
     dig_html_begin(to, title);
-    (void)fputs("<p class=result>", to);
-    dig_html_text(to, sentence);
-    (void)fprintf(to, "</p>\n<p>%zu digs against ", page->trace->digs);
-    dig_html_without_folders(to, page->subject->table);
-    if (page->subject->lambda > 0.0) {
+    dig_html_between(to, "<p class=result>", sentence, "</p>\n");
+    (void)fprintf(to, "<p>%zu digs against ", trace->digs);
+    dig_html_without_folders(to, subject->table);
+    if (subject->lambda > 0.0) {
         (void)fprintf(to,
                       "; what dug is %.3g times the rig, which makes a moment %.0f times as large",
-                      page->subject->lambda, pow(page->subject->lambda, 4.0));
+                      subject->lambda, pow(subject->lambda, 4.0));
     }
     (void)fputs(".</p>\n", to);
-    dig_trace_not_applied(page->trace, sizeof sentence, sentence);
+    dig_trace_not_applied(trace, sizeof sentence, sentence);
     if (sentence[0] != '\0') {
-        (void)fputs("<p>", to);
-        dig_html_text(to, sentence);
-        (void)fputs(".</p>\n", to);
+        dig_html_between(to, "<p>", sentence, ".</p>\n");
     }
-    put_sets(to, page->trace);
-    put_errors(to, page->trace);
-    put_found(to, page->trace);
-    const enum dig_status status = put_digs(to, page, error);
+    put_sets(to, trace);
+    put_errors(to, trace);
+    put_found(to, trace);
+    const enum dig_status status = put_digs(to, trace, subject, error);
     if (status != DIG_OK) {
         return status;
     }
-    put_residuals(to, page->trace);
-    const enum dig_status left = dig_residuals_html(page->trace->residuals, to, error);
+    put_residuals(to, trace);
+    const enum dig_status left = dig_residuals_html(trace->residuals, to, error);
     if (left != DIG_OK) {
         return left;
     }
-    put_candidates(to, page->trace);
-    put_next(to, page);
+    put_candidates(to, trace);
+    put_next(to, trace);
     dig_html_end(to, DIG_REPORT_ERROR_NOTE);
     return DIG_OK;
 }

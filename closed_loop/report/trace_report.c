@@ -16,7 +16,7 @@ static void put_parameters(FILE *const to, const size_t n,
     (void)fputs("\"parameters\": {", to);
     for (size_t p = 0; p < n; p++) {
         (void)fputs(p == 0 ? "" : ", ", to);
-        dig_json_string(to, parameter[p].name);
+        dig_text_put_json(to, parameter[p].name);
         dig_json_member(to, ": {", "value", parameter[p].value);
         dig_json_member(to, ", ", "low", parameter[p].low);
         dig_json_member(to, ", ", "high", parameter[p].high);
@@ -71,15 +71,13 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
         dig_json_member(to, ", ", "probability", effect->probability);
         (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(trace->seen_in[e]));
         if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
-            (void)fputs("\"depends_on\": ", to);
-            dig_json_string(to, trace->unlisted->depends_on);
+            dig_json_text(to, "", "depends_on", trace->unlisted->depends_on);
             (void)fputs(", ", to);
         }
         char text[256];
         dig_trace_meaning(trace, e, sizeof text, text);
         if (text[0] != '\0') {
-            (void)fputs("\"meaning\": ", to);
-            dig_json_string(to, text);
+            dig_json_text(to, "", "meaning", text);
             (void)fputs(", ", to);
         }
         put_parameters(to, effect->parameters, effect->parameter);
@@ -143,8 +141,7 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
         (void)fprintf(to, "%s\n  {\"effects\": [\"%s\", \"%s\"], \"in\": ", i == 0 ? "" : ",",
                       dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
         (void)fputs(told ? (tell->in_air ? "\"air\"" : "\"soil\"") : "null", to);
-        (void)fputs(", \"how\": ", to);
-        dig_json_string(to, tell->how);
+        dig_json_text(to, ", ", "how", tell->how);
         dig_json_member(to, ", ", "sigmas", told ? tell->sigmas : (double)NAN);
         dig_json_member(to, ", ", "repeats", told ? tell->repeats : (double)NAN);
         (void)fputs("}", to);
@@ -176,11 +173,9 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     (void)fprintf(to, "}, \"no_air\": %s,\n", trace->no_air ? "true" : "false");
     put_candidates(to, trace);
     dig_residuals_json(trace->residuals, to);
-    (void)fputs(" \"advice\": ", to);
-    dig_json_string(to, trace->advice);
+    dig_json_text(to, " ", "advice", trace->advice);
     put_tells(to, trace);
-    (void)fputs(",\n \"command\": ", to);
-    dig_json_string(to, trace->command);
+    dig_json_text(to, ",\n ", "command", trace->command);
     (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
                 "±0.16 s\"}\n",
                 to);

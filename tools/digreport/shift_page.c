@@ -32,9 +32,8 @@ static void put_effects(const struct dig_model *const model, FILE *const to)
         }
     }
     if (model->unlisted != NULL) {
-        (void)fputs("<tr><th>unlisted</th><td>depends on ", to);
-        dig_html_text(to, model->unlisted->depends_on);
-        (void)fputs("</td><td></td><td></td></tr>\n", to);
+        dig_html_between(to, "<tr><th>unlisted</th><td>depends on ", model->unlisted->depends_on,
+                         "</td><td></td><td></td></tr>\n");
     }
     (void)fputs("</table>\n", to);
 }
@@ -71,8 +70,7 @@ static void put_events(const struct digreport_shift *const shift, FILE *const to
         } else {
             (void)fputs("</td><td></td><td>", to);
         }
-        dig_html_text(to, e->text != NULL ? e->text->todo : "");
-        (void)fputs("</td></tr>\n", to);
+        dig_html_between(to, "", e->text != NULL ? e->text->todo : "", "</td></tr>\n");
     }
     (void)fputs("</table>\n", to);
 }
@@ -89,9 +87,7 @@ static void put_subject(const struct digreport_page *const page, FILE *const to)
     (void)fprintf(to, "</p>\n<p>%s to %s, from %zu log%s. ", from, until, page->subject->logs,
                   page->subject->logs == 1 ? "" : "s");
     if (shift->lambda > 0.0) {
-        (void)fputs("Machine ", to);
-        dig_html_text(to, page->subject->machine);
-        (void)fputs(", table of scene ", to);
+        dig_html_between(to, "Machine ", page->subject->machine, ", table of scene ");
         dig_html_text(to, page->subject->scene);
         (void)fprintf(to, "; the machine is %.3g times the rig. ", shift->lambda);
     } else {

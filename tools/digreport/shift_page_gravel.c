@@ -59,9 +59,7 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
     (void)fputs("<tr>", to);
     digreport_page_time_cell(to, g->time_us);
     if (!g->known) {
-        (void)fputs("<td colspan=5>not known any more: ", to);
-        dig_html_text(to, g->wanted);
-        (void)fputs("</td></tr>\n", to);
+        dig_html_between(to, "<td colspan=5>not known any more: ", g->wanted, "</td></tr>\n");
         return;
     }
     for (int a = 0; a < DIG_AXES; a++) {
@@ -73,8 +71,7 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
                   g->digs, g->forces ? "with force" : "moment alone",
                   g->outside ? "outside the table: the nearest" : "");
     if (g->untold[0] != '\0') {
-        (void)fputs("a family; not told: ", to);
-        dig_html_text(to, g->untold);
+        dig_html_between(to, "a family; not told: ", g->untold, "");
     }
     (void)fputs("</td></tr>\n", to);
 }

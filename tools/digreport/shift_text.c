@@ -137,7 +137,7 @@ static void put_json_time(const char *const before, const char *const name, cons
 {
     char time[DIGREPORT_TIME];
     digreport_time(time_us, time);
-    (void)fprintf(to, "%s\"%s\": \"%s\"", before, name, time);
+    dig_json_text(to, before, name, time);
 }
 
 static void put_json_numbers(const int n, const struct number number[], FILE *const to)
@@ -146,12 +146,6 @@ static void put_json_numbers(const int n, const struct number number[], FILE *co
         dig_json_member(to, ", ", number[k].name, number[k].value);
     }
     (void)fputc('}', to);
-}
-
-static void put_json_text(const char *const name, const char *const text, FILE *const to)
-{
-    (void)fprintf(to, ", \"%s\": ", name);
-    dig_json_string(to, text);
 }
 
 void digreport_shift_json(const struct digreport_shift *const shift, FILE *const to)
@@ -166,8 +160,8 @@ void digreport_shift_json(const struct digreport_shift *const shift, FILE *const
         const struct digreport_dig *const d = &shift->dig[i];
         put_json_time(i == 0 ? "\n {" : ",\n {", "time_utc", d->time_us, to);
         (void)fprintf(to, ", \"dig\": %" PRId32, d->number);
-        put_json_text("trajectory", d->trajectory, to);
-        put_json_text("ended", digreport_ending_name(d->ended), to);
+        dig_json_text(to, ", ", "trajectory", d->trajectory);
+        dig_json_text(to, ", ", "ended", digreport_ending_name(d->ended));
         numbers_of_dig(shift, d, number);
         put_json_numbers(OF_DIG, number, to);
     }
@@ -178,7 +172,7 @@ void digreport_shift_json(const struct digreport_shift *const shift, FILE *const
         (void)fprintf(to, ", \"known\": %s, \"outside\": %s, \"forces\": %s, \"digs\": %" PRId32,
                       g->known ? "true" : "false", g->outside ? "true" : "false",
                       g->forces ? "true" : "false", g->digs);
-        put_json_text("untold", g->untold, to);
+        dig_json_text(to, ", ", "untold", g->untold);
         numbers_of_gravel(g->known ? g : NULL, number);
         put_json_numbers(OF_GRAVEL, number, to);
     }
@@ -188,8 +182,8 @@ void digreport_shift_json(const struct digreport_shift *const shift, FILE *const
         put_json_time(i == 0 ? "\n {" : ",\n {", "from_utc", e->from_us, to);
         put_json_time(", ", "to_utc", e->to_us, to);
         (void)fprintf(to, ", \"count\": %" PRId64, e->count);
-        put_json_text("what", e->text != NULL ? e->text->what : e->said, to);
-        put_json_text("todo", e->text != NULL ? e->text->todo : "", to);
+        dig_json_text(to, ", ", "what", e->text != NULL ? e->text->what : e->said);
+        dig_json_text(to, ", ", "todo", e->text != NULL ? e->text->todo : "");
         (void)fputc('}', to);
     }
     (void)fputs("]}\n", to);
