@@ -13,7 +13,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 // What the daemon had: machine, table and, where it ran with one, the model, by which the digs are
 // measured again.
@@ -54,7 +53,7 @@ static enum dig_status report(const struct digreport_options *const options,
         status = dig_error_set(error, DIG_ENOMEM, "out of memory");
         goto done;
     }
-    all->title  = options->title;
+    all->title  = options->title != NULL ? options->title : "What the ground resisted with";
     all->table  = options->table;
     all->lambda = had.machine.link[DIG_JOINT_BUCKET].length_m / had.set->tooth_m;
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
@@ -88,21 +87,15 @@ done:
     return status;
 }
 
-// The whole command line, or the command's.
-static enum dig_status work(const int argc, char *argv[], struct dig_error *const error)
-{
-    struct digreport_options options = { 0 };
-    if (argc > 1 && strcmp(argv[1], "shift") == 0) {
-        return digreport_shift_command(argc, argv, error);
-    }
-    const enum dig_status status = digreport_parse(argc, argv, &options, error);
-    return status == DIG_OK ? report(&options, error) : status;
-}
-
 int main(const int argc, char *argv[])
 {
-    struct dig_error      error  = { "" };
-    const enum dig_status status = work(argc, argv, &error);
+    struct digreport_options options = { .logs = 0 };
+    struct dig_error         error   = { "" };
+    enum dig_status          status  = digreport_parse(argc, argv, &options, &error);
+    if (status == DIG_OK) {
+        status =
+            options.shift ? digreport_shift_command(&options, &error) : report(&options, &error);
+    }
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digreport: %s\n", error.text);
     }

@@ -1,5 +1,6 @@
 #include "tools/digreport/options.h"
 
+#include "core/command_line.h"
 #include "core/did_you_mean.h"
 #include "core/help.h"
 #include "files/text/whole.h"
@@ -9,6 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { TABLE = 256, MACHINE, MODEL, TRUTH, RECORDING, TITLE, HTML, CSV, JSON, QUIET = 'q' };
 
 static const struct dig_command commands[] = {
     { "shift", "LOG.lcm... [OPTION]...",
@@ -22,45 +25,39 @@ static const struct dig_command commands[] = {
 };
 
 static const struct dig_option known[] = {
-    { "table", DIGREPORT_TABLE, "TABLE.sqlite", NULL, "what the daemon predicted from" },
-    { "machine", DIGREPORT_MACHINE, "MACHINE.yaml", NULL, "the machine that dug" },
-    { "model", DIGREPORT_MODEL, "MODEL.json", NULL, "the model that the daemon ran with" },
-    { "truth", DIGREPORT_TRUTH, "FRICTION,ROLLING,DENSITY", " digreport ",
-      "the gravel, where it is known" },
-    { "recording", DIGREPORT_RECORDING, "RECORDING.csv", " digreport ",
+    { "table", TABLE, "TABLE.sqlite", NULL, "what the daemon predicted from" },
+    { "machine", MACHINE, "MACHINE.yaml", NULL, "the machine that dug" },
+    { "model", MODEL, "MODEL.json", NULL, "the model that the daemon ran with" },
+    { "truth", TRUTH, "FRICTION,ROLLING,DENSITY", " digreport ", "the gravel, where it is known" },
+    { "recording", RECORDING, "RECORDING.csv", " digreport ",
       "a force recording that was fed to the rig, drawn beside; up to 8" },
-    { "title", DIGREPORT_TITLE, "TEXT", NULL, "of the page" },
-    { "html", DIGREPORT_HTML, "PAGE.html", NULL, "write a page with plots" },
-    { "csv", DIGREPORT_CSV, "DIGS.csv", " shift ", "write a line a dig" },
-    { "json", DIGREPORT_JSON, "FILE.json", NULL,
+    { "title", TITLE, "TEXT", NULL, "of the page" },
+    { "html", HTML, "PAGE.html", NULL, "write a page with plots" },
+    { "csv", CSV, "DIGS.csv", " shift ", "write a line a dig" },
+    { "json", JSON, "FILE.json", NULL,
       "write the results as JSON, - for standard output; what people read goes to standard error "
       "then" },
-    { "quiet", DIGREPORT_QUIET, NULL, NULL, "nothing for people, only what goes wrong" },
+    { "quiet", QUIET, NULL, NULL, "nothing for people, only what goes wrong" },
 };
 
-const struct dig_program *digreport_program(void)
-{
-    static const struct dig_program program = {
-        .self = { "digreport",
-                  "--table TABLE --machine MACHINE NAME=LOG.lcm... [OPTION]...\nshift ARGUMENT...",
-                  "Shows what a run of digsightd identified and predicted, from its LCM log.",
-                  "NAME is how the run is called in the report; up to 4 runs. A log must hold one "
-                  "simple dig that identified the gravel and one later dig that was predicted.\n\n"
-                  "The table of results goes to standard output.",
-                  "digreport --table tables/product.sqlite --html report.html \\\n"
-                  "          --machine config/machines/zx200_trench.yaml "
-                  "\"SocketCAN=site.lcm\"\n" },
-        .exit_status =
-            "0  done\n1  the work failed, or a log holds no identified and predicted dig\n"
-            "2  bad usage or bad input\n",
-        .alone    = true,
-        .commands = sizeof commands / sizeof commands[0],
-        .command  = commands,
-        .options  = sizeof known / sizeof known[0],
-        .option   = known,
-    };
-    return &program;
-}
+static const struct dig_program program = {
+    .self        = { "digreport",
+                     "--table TABLE --machine MACHINE NAME=LOG.lcm... [OPTION]...\nshift ARGUMENT...",
+                     "Shows what a run of digsightd identified and predicted, from its LCM log.",
+                     "NAME is how the run is called in the report; up to 4 runs. A log must hold one "
+                            "simple dig that identified the gravel and one later dig that was predicted.\n\n"
+                            "The table of results goes to standard output.",
+                     "digreport --table tables/product.sqlite --html report.html \\\n"
+                            "          --machine config/machines/zx200_trench.yaml "
+                            "\"SocketCAN=site.lcm\"\n" },
+    .exit_status = "0  done\n1  the work failed, or a log holds no identified and predicted dig\n"
+                   "2  bad usage or bad input\n",
+    .alone       = true,
+    .commands    = sizeof commands / sizeof commands[0],
+    .command     = commands,
+    .options     = sizeof known / sizeof known[0],
+    .option      = known,
+};
 
 static enum dig_status parse_truth(const char *const text, struct dig_gravel *const truth,
                                    struct dig_error *const error)
@@ -80,58 +77,95 @@ static enum dig_status parse_truth(const char *const text, struct dig_gravel *co
     return DIG_OK;
 }
 
+// One option into *o.
+static enum dig_status take(const int option, struct digreport_options *const o,
+                            struct dig_error *const error)
+{
+    switch (option) {
+    case TABLE: o->table = optarg; break;
+    case MACHINE: o->machine = optarg; break;
+    case MODEL: o->model = optarg; break;
+    case TITLE: o->title = optarg; break;
+    case HTML: o->html = optarg; break;
+    case CSV: o->csv = optarg; break;
+    case JSON: o->json = optarg; break;
+    case QUIET: o->quiet = true; break;
+    case TRUTH: o->truth_known = true; return parse_truth(optarg, &o->truth, error);
+    case RECORDING:
+        if (o->recordings == sizeof o->recording / sizeof o->recording[0]) {
+            return dig_error_set(error, DIG_EINVAL, "--recording: expected at most 8");
+        }
+        o->recording[o->recordings++] = optarg;
+        break;
+    default: return DIG_EINVAL; // said already
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_shift(const struct digreport_options *const o,
+                                   struct dig_error *const               error)
+{
+    if (o->logs == 0) {
+        return dig_error_set(error, DIG_EINVAL, "shift: expected at least one LOG.lcm");
+    }
+    if ((o->table == NULL) != (o->machine == NULL)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "shift: expected --table and --machine, or neither: both tell how "
+                             "much larger the machine is than the rig");
+    }
+    return DIG_OK;
+}
+
+static enum dig_status check_runs(const struct digreport_options *const o,
+                                  struct dig_error *const               error)
+{
+    for (size_t i = 0; i < o->logs; i++) {
+        if (i == DIG_REPORT_RUNS_MAX || strchr(o->log[i], '=') == NULL) {
+            char             text[DIG_GUESS_SIZE];
+            struct dig_guess guess = dig_guess(o->log[i]);
+            dig_guess_try(&guess, commands[0].name);
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: expected NAME=LOG.lcm, at most %d of them%s", o->log[i],
+                                 DIG_REPORT_RUNS_MAX, dig_guess_text(&guess, "", text));
+        }
+    }
+    return o->table != NULL && o->machine != NULL && o->logs > 0
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "expected --table, --machine and at least one NAME=LOG.lcm");
+}
+
 enum dig_status digreport_parse(const int argc, char *argv[],
                                 struct digreport_options *const options,
                                 struct dig_error *const         error)
 {
-    const struct dig_program *const program = digreport_program();
-    struct digreport_options        o       = { .title = "What the ground resisted with" };
-    for (int c;
-         (c = dig_option_next(program, &program->self, argc, argv, error)) != DIG_OPTION_END;) {
-        switch (c) {
-        case DIGREPORT_TABLE: o.table = optarg; break;
-        case DIGREPORT_MACHINE: o.machine = optarg; break;
-        case DIGREPORT_MODEL: o.model = optarg; break;
-        case DIGREPORT_TITLE: o.title = optarg; break;
-        case DIGREPORT_HTML: o.html = optarg; break;
-        case DIGREPORT_JSON: o.json = optarg; break;
-        case DIGREPORT_QUIET: o.quiet = true; break;
-        case DIG_OPTION_HELP: dig_help_print(program, &program->self, stdout); exit(EXIT_SUCCESS);
-        case DIG_OPTION_VERSION: (void)puts("digreport " DIG_VERSION); exit(EXIT_SUCCESS);
-        case DIGREPORT_TRUTH: {
-            const enum dig_status status = parse_truth(optarg, &o.truth, error);
-            if (status != DIG_OK) {
-                return status;
-            }
-            o.truth_known = true;
-            break;
+    const bool shift = argc > 1 && strcmp(argv[1], commands[0].name) == 0;
+
+    const struct dig_command *const command = shift ? &commands[0] : &program.self;
+    struct digreport_options        o       = { .shift = shift };
+    for (int c; (c = dig_option_next(&program, command, argc, argv, error)) != DIG_OPTION_END;) {
+        if (c == DIG_OPTION_HELP) {
+            dig_help_print(&program, command, stdout);
+            exit(EXIT_SUCCESS);
         }
-        case DIGREPORT_RECORDING:
-            if (o.recordings == sizeof o.recording / sizeof o.recording[0]) {
-                return dig_error_set(error, DIG_EINVAL, "--recording: expected at most 8");
-            }
-            o.recording[o.recordings++] = optarg;
-            break;
-        default: return DIG_EINVAL; // said already
+        if (c == DIG_OPTION_VERSION) {
+            (void)puts("digreport " DIG_VERSION);
+            exit(EXIT_SUCCESS);
+        }
+        const enum dig_status status = take(c, &o, error);
+        if (status != DIG_OK) {
+            return status;
         }
     }
-    for (; optind < argc; optind++) {
-        if (o.logs == DIG_REPORT_RUNS_MAX || strchr(argv[optind], '=') == NULL) {
-            char             text[DIG_GUESS_SIZE];
-            struct dig_guess guess = dig_guess(argv[optind]);
-            dig_guess_try(&guess, commands[0].name);
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s: expected NAME=LOG.lcm, at most %d of them%s", argv[optind],
-                                 DIG_REPORT_RUNS_MAX, dig_guess_text(&guess, "", text));
-        }
-        o.log[o.logs++] = argv[optind];
+    o.log                        = argv + optind;
+    o.logs                       = (size_t)(argc - optind);
+    const enum dig_status status = shift ? check_shift(&o, error) : check_runs(&o, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (o.table == NULL || o.machine == NULL || o.logs == 0) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "expected --table, --machine and at least one NAME=LOG.lcm");
-    }
-    if (dig_out_is_stdout(o.html) && dig_out_is_stdout(o.json)) {
-        return dig_error_set(error, DIG_EINVAL, "two results on standard output, expected one");
+    if (dig_out_is_stdout(o.html) + dig_out_is_stdout(o.csv) + dig_out_is_stdout(o.json) > 1) {
+        return dig_error_set(error, DIG_EINVAL, "%stwo results on standard output, expected one",
+                             shift ? "shift: " : "");
     }
     *options = o;
     return DIG_OK;

@@ -4,35 +4,21 @@
 #define DIG_TOOLS_DIGREPORT_OPTIONS_H
 
 #include "closed_loop/report/report.h"
-#include "core/command_line.h"
 #include "core/error.h"
 
 #include <stdbool.h>
 
-enum digreport_option {
-    DIGREPORT_TABLE = 256,
-    DIGREPORT_MACHINE,
-    DIGREPORT_MODEL,
-    DIGREPORT_TRUTH,
-    DIGREPORT_RECORDING,
-    DIGREPORT_TITLE,
-    DIGREPORT_HTML,
-    DIGREPORT_CSV,
-    DIGREPORT_JSON,
-    DIGREPORT_QUIET = 'q',
-};
-
-/// Its commands, and the options of them all.
-const struct dig_program *digreport_program(void);
-
+/// Of both commands. title: NULL where none was given. Without the command `shift` there are 1 to
+/// DIG_REPORT_RUNS_MAX logs, each NAME=LOG.lcm.
 struct digreport_options {
-    const char       *table, *machine, *model, *title, *html, *json;
+    bool              shift; // the command
+    const char       *table, *machine, *model, *title, *html, *csv, *json;
     bool              truth_known, quiet;
     struct dig_gravel truth;
     size_t            recordings;
     const char       *recording[8];
     size_t            logs;
-    char             *log[DIG_REPORT_RUNS_MAX];
+    char            **log;
 };
 
 /// Reads the command line; prints help or version and exits where asked to. *error says what is

@@ -35,11 +35,19 @@ const char *digreport_ending_name(const enum digreport_ending ended)
     return name[ended];
 }
 
-// The array with room for one more element; NULL: no memory, and it stays as it is.
-static void *with_room(void *const array, const size_t n, const size_t size)
+// The array with room for one more element; NULL, and it stays as it is: there are as many as are
+// kept, which is counted, or no memory, which is the status.
+static void *with_room(struct digreport_shift *const shift, void *const array, const size_t n,
+                       const size_t size)
 {
-    const bool full = (n & (n + 1)) == 0; // it has room for 1, 3, 7, …
-    return full ? realloc(array, (2 * n + 1) * size) : array;
+    if (n == MOST) {
+        shift->left_out++;
+        return NULL;
+    }
+    const bool  full  = (n & (n + 1)) == 0; // it has room for 1, 3, 7, …
+    void *const grown = full ? realloc(array, (2 * n + 1) * size) : array;
+    shift->status     = grown != NULL ? shift->status : DIG_ENOMEM;
+    return grown;
 }
 
 // By how much a counter has grown; a daemon that began anew, or another's message, says nothing.
@@ -64,17 +72,12 @@ static void add_event(struct digreport_shift *const shift, const int64_t time_us
             return;
         }
     }
-    if (shift->events == MOST) {
-        shift->left_out++;
-        return;
+    struct digreport_event *const grown =
+        with_room(shift, shift->event, shift->events, sizeof *grown);
+    if (grown != NULL) {
+        shift->event                  = grown;
+        shift->event[shift->events++] = e;
     }
-    struct digreport_event *const grown = with_room(shift->event, shift->events, sizeof *grown);
-    if (grown == NULL) {
-        shift->status = DIG_ENOMEM;
-        return;
-    }
-    shift->event                  = grown;
-    shift->event[shift->events++] = e;
 }
 
 static void take_estimate(void *const context, const int64_t time_us,
@@ -84,17 +87,14 @@ static void take_estimate(void *const context, const int64_t time_us,
     struct digreport_dig          dig;
     bool                          finished = false;
     shift->status = digreport_track_estimate(&shift->track, time_us, said, &finished, &dig);
-    shift->left_out += finished && shift->digs == MOST ? 1 : 0;
-    if (!finished || shift->digs == MOST) {
+    if (!finished) {
         return;
     }
-    struct digreport_dig *const grown = with_room(shift->dig, shift->digs, sizeof *grown);
-    if (grown == NULL) {
-        shift->status = DIG_ENOMEM;
-        return;
+    struct digreport_dig *const grown = with_room(shift, shift->dig, shift->digs, sizeof *grown);
+    if (grown != NULL) {
+        shift->dig                = grown;
+        shift->dig[shift->digs++] = dig;
     }
-    shift->dig                = grown;
-    shift->dig[shift->digs++] = dig;
 }
 
 static void take_prediction(void *const context, const int64_t time_us,
@@ -174,13 +174,9 @@ static void take_match(void *const context, const int64_t time_us,
     if (known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) {
         return;
     }
-    if (shift->gravels == MOST) {
-        shift->left_out++;
-        return;
-    }
-    struct digreport_gravel *const grown = with_room(shift->gravel, shift->gravels, sizeof *grown);
+    struct digreport_gravel *const grown =
+        with_room(shift, shift->gravel, shift->gravels, sizeof *grown);
     if (grown == NULL) {
-        shift->status = DIG_ENOMEM;
         return;
     }
     shift->gravel                   = grown;
@@ -214,11 +210,9 @@ static void take_health(void *const context, const int64_t time_us,
             add_event(shift, time_us, dig_health_counter_text(i), "", grown);
         }
     }
-    if (shift->any_health) {
-        const int64_t taken = growth(shift->reloads, said->reloads);
-        if (taken > 0) {
-            add_event(shift, time_us, &reloaded, "", taken);
-        }
+    const int64_t taken = growth(shift->reloads, said->reloads);
+    if (shift->any_health && taken > 0) {
+        add_event(shift, time_us, &reloaded, "", taken);
     }
     count_endings(shift, said);
     memcpy(shift->count, count, sizeof shift->count);

@@ -1,13 +1,12 @@
-// digreport shift: its command line and its job.
+// digreport shift.
 
 #ifndef DIG_TOOLS_DIGREPORT_SHIFT_COMMAND_H
 #define DIG_TOOLS_DIGREPORT_SHIFT_COMMAND_H
 
-#include "core/error.h"
+#include "tools/digreport/options.h"
 
-/// argv[0] is the command's name. Prints help and exits where asked to. DIG_EINVAL: bad usage or
-/// bad input, *error says what is wrong.
-DIG_MUST_CHECK enum dig_status digreport_shift_command(int argc, char *argv[],
-                                                       struct dig_error *error);
+/// DIG_EINVAL: bad input, *error says what is wrong. A page fails as dig_plot_figure().
+DIG_MUST_CHECK enum dig_status digreport_shift_command(const struct digreport_options *options,
+                                                       struct dig_error               *error);
 
 #endif // DIG_TOOLS_DIGREPORT_SHIFT_COMMAND_H

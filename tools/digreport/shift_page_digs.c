@@ -20,128 +20,124 @@ static void put_predicted(FILE *const to, const int digits, const double value, 
     }
 }
 
-// One number of each dig over time: measured points, and the predicted as a short line in the box
-// that holds 90 % of digs. A picture without any number is left out.
-struct series {
-    size_t  n;
-    double *x, *y, *box_x, *box_y, *low, *high; // boxes: two ends and a gap a dig
+// A picture: a number of each dig over time. Measured points, and the predicted as a short line in
+// the box that holds 90 % of digs.
+struct picture {
+    const char *title, *y_label;
+    const char *right_label;      // NULL: no second scale
+    const char *predicted, *band; // in the key; NULL: there is none
 };
 
-static enum dig_status make_series(const size_t digs, struct series *const s)
-{
-    double *const all = calloc(14 * digs + 1, sizeof *all);
-    *s                = (struct series){ .n     = digs,
-                                         .x     = all,
-                                         .y     = all + digs,
-                                         .box_x = all + 2 * digs,
-                                         .box_y = all + 5 * digs,
-                                         .low   = all + 8 * digs,
-                                         .high  = all + 11 * digs };
-    return all != NULL ? DIG_OK : DIG_ENOMEM;
-}
+enum { DIGS, PEAK, ENERGY, ERROR, PICTURES };
 
-static void set_dig(const struct digreport_page *const page, struct series *const s, const size_t i,
-                    const double measured, const double predicted, const double sigma)
+static const struct picture pictures[PICTURES] = {
+    [DIGS]   = { "Digs", "digs done", NULL, NULL, NULL },
+    [PEAK]   = { "Peak of each dig", "peak moment, kN·m", "at rig scale, N·m", "predicted",
+                 "90 % of digs" },
+    [ENERGY] = { "Energy of each dig", "energy, kJ", "at rig scale, J", "predicted",
+                 "90 % of digs" },
+    [ERROR]  = { "Error of each prediction", "error, % of the moment", NULL, "noise floor", NULL },
+};
+
+// What a picture shows of a dig; NaN: nothing.
+struct number {
+    double measured, predicted, sigma;
+};
+
+static struct number number_of(const struct digreport_shift *const shift, const int picture,
+                               const size_t i)
 {
-    const struct digreport_shift *const shift = page->shift;
-    const double width = 0.012 * fmax(digreport_page_time(page, shift->last_us), 1e-6);
-    s->x[i]            = digreport_page_time(page, shift->dig[i].time_us);
-    s->y[i]            = measured;
-    for (size_t end = 0; end < 3; end++) {
-        const size_t at = 3 * i + end;
-        const double y  = end < 2 ? predicted : (double)NAN;
-        s->box_x[at]    = s->x[i] + (end == 0 ? -width : width);
-        s->box_y[at]    = y;
-        s->low[at]      = y - DIG_REPORT_BAND_SIGMAS * sigma;
-        s->high[at]     = y + DIG_REPORT_BAND_SIGMAS * sigma;
+    const struct digreport_dig *const d = &shift->dig[i];
+    switch (picture) {
+    case PEAK:
+        return (struct number){ 1e-3 * d->peak_Nm, 1e-3 * d->predicted_peak_Nm,
+                                1e-3 * d->predicted_peak_sigma_Nm };
+    case ENERGY:
+        return (struct number){ 1e-3 * d->energy_J, 1e-3 * d->predicted_energy_J,
+                                1e-3 * d->predicted_energy_sigma_J };
+    case ERROR: return (struct number){ 100.0 * d->error, 100.0 * d->noise_floor, (double)NAN };
+    default: return (struct number){ (double)i + 1.0, (double)NAN, (double)NAN };
     }
 }
 
-static enum dig_status put_dig_plot(const struct digreport_page *const page, FILE *const to,
-                                    const struct series *const s, const char *const title,
-                                    const char *const y_label, const char *const right_label,
-                                    const char *const predicted, const char *const band,
-                                    struct dig_error *const error)
+// A picture without any number is left out. room: of six curves of three points a dig.
+static enum dig_status put_picture(const struct digreport_page *const page, FILE *const to,
+                                   const int picture, double room[], struct dig_error *const error)
 {
-    const size_t    n    = 3 * s->n;
+    const struct digreport_shift *const shift = page->shift;
+    const struct picture *const         p     = &pictures[picture];
+    const size_t                        n     = 3 * shift->digs; // boxes: two ends and a gap a dig
+    double *const                       x     = room;
+    double *const                       y     = room + n;
+    double *const                       box_x = room + 2 * n;
+    double *const                       box_y = room + 3 * n;
+    double *const                       low   = room + 4 * n;
+    double *const                       high  = room + 5 * n;
+    const double                        x_to  = digreport_page_time(page, shift->last_us);
+    const double                        width = 0.012 * fmax(x_to, 1e-6);
+    for (size_t i = 0; i < shift->digs; i++) {
+        const struct number number = number_of(shift, picture, i);
+        x[i]                       = digreport_page_time(page, shift->dig[i].time_us);
+        y[i]                       = number.measured;
+        for (size_t end = 0; end < 3; end++) {
+            const size_t at   = 3 * i + end;
+            const double half = DIG_REPORT_BAND_SIGMAS * number.sigma;
+            box_x[at]         = x[i] + (end == 0 ? -width : width);
+            box_y[at]         = end < 2 ? number.predicted : (double)NAN;
+            low[at]           = box_y[at] - half;
+            high[at]          = box_y[at] + half;
+        }
+    }
+    if (!digreport_page_any(shift->digs, y)) {
+        return DIG_OK;
+    }
     struct dig_plot plot = {
-        .title     = title,
+        .title     = p->title,
         .x_label   = page->x_label,
-        .y_label   = y_label,
-        .x_to      = digreport_page_time(page, page->shift->last_us),
+        .y_label   = p->y_label,
+        .x_to      = x_to,
         .from_zero = true,
         .width     = 480,
         .height    = 340,
     };
-    if (right_label != NULL && page->shift->lambda > 0.0) {
-        plot.right_label  = right_label;
-        plot.right_factor = 1e3 * pow(page->shift->lambda, -4.0);
+    if (p->right_label != NULL && shift->lambda > 0.0) {
+        plot.right_label  = p->right_label;
+        plot.right_factor = 1e3 * pow(shift->lambda, -4.0);
     }
-    if (!digreport_page_any(s->n, s->y)) {
-        return DIG_OK;
-    }
-    if (band != NULL && digreport_page_any(n, s->low)) {
+    if (p->band != NULL && digreport_page_any(n, low)) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ band,   DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, s->box_x,
-                                      s->low, s->high };
+            (struct dig_plot_series){ p->band, DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, box_x,
+                                      low,     high };
     }
-    if (digreport_page_any(n, s->box_y)) {
+    if (digreport_page_any(n, box_y)) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ predicted, DIG_PLOT_LINE, DIG_PLOT_PREDICTED, n, s->box_x,
-                                      s->box_y,  NULL };
+            (struct dig_plot_series){ p->predicted, DIG_PLOT_LINE, DIG_PLOT_PREDICTED, n, box_x,
+                                      box_y,        NULL };
     }
-    plot.s[plot.series++] = (struct dig_plot_series){ predicted != NULL ? "measured" : NULL,
+    plot.s[plot.series++] = (struct dig_plot_series){ p->predicted != NULL ? "measured" : NULL,
                                                       DIG_PLOT_POINTS,
                                                       DIG_PLOT_MEASURED,
-                                                      s->n,
-                                                      s->x,
-                                                      s->y,
+                                                      shift->digs,
+                                                      x,
+                                                      y,
                                                       NULL };
     return dig_plot_figure(&plot, to, error);
 }
 
-static enum dig_status put_dig_plots(const struct digreport_page *const page, FILE *const to,
-                                     struct dig_error *const error)
+static enum dig_status put_pictures(const struct digreport_page *const page, FILE *const to,
+                                    struct dig_error *const error)
 {
-    const struct digreport_shift *const shift = page->shift;
-    struct series                       s;
-    enum dig_status                     status = make_series(shift->digs, &s);
-    if (status != DIG_OK) {
-        return dig_error_set(error, status, "out of memory");
+    double *const   room   = calloc(18 * page->shift->digs, sizeof *room);
+    enum dig_status status = DIG_OK;
+    if (room == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     (void)fputs("<div class=grid>\n", to);
-    for (size_t i = 0; i < shift->digs; i++) {
-        set_dig(page, &s, i, (double)i + 1.0, (double)NAN, (double)NAN);
-    }
-    status = put_dig_plot(page, to, &s, "Digs", "digs done", NULL, NULL, NULL, error);
-    for (size_t i = 0; i < shift->digs; i++) {
-        const struct digreport_dig *const d = &shift->dig[i];
-        set_dig(page, &s, i, 1e-3 * d->peak_Nm, 1e-3 * d->predicted_peak_Nm,
-                1e-3 * d->predicted_peak_sigma_Nm);
-    }
-    if (status == DIG_OK) {
-        status = put_dig_plot(page, to, &s, "Peak of each dig", "peak moment, kN·m",
-                              "at rig scale, N·m", "predicted", "90 % of digs", error);
-    }
-    for (size_t i = 0; i < shift->digs; i++) {
-        const struct digreport_dig *const d = &shift->dig[i];
-        set_dig(page, &s, i, 1e-3 * d->energy_J, 1e-3 * d->predicted_energy_J,
-                1e-3 * d->predicted_energy_sigma_J);
-    }
-    if (status == DIG_OK) {
-        status = put_dig_plot(page, to, &s, "Energy of each dig", "energy, kJ", "at rig scale, J",
-                              "predicted", "90 % of digs", error);
-    }
-    for (size_t i = 0; i < shift->digs; i++) {
-        const struct digreport_dig *const d = &shift->dig[i];
-        set_dig(page, &s, i, 100.0 * d->error, 100.0 * d->noise_floor, (double)NAN);
-    }
-    if (status == DIG_OK) {
-        status = put_dig_plot(page, to, &s, "Error of each prediction", "error, % of the moment",
-                              NULL, "noise floor", NULL, error);
+    for (int p = 0; p < PICTURES && status == DIG_OK; p++) {
+        status = put_picture(page, to, p, room, error);
     }
     (void)fputs("</div>\n", to);
-    free(s.x);
+    free(room);
     return status;
 }
 
@@ -190,7 +186,7 @@ enum dig_status digreport_page_digs(const struct digreport_page *const page, FIL
         (void)fputs("<p>No dig was finished.</p>\n", to);
         return DIG_OK;
     }
-    const enum dig_status status = put_dig_plots(page, to, error);
+    const enum dig_status status = put_pictures(page, to, error);
     put_digs(page->shift, to);
     return status;
 }
