@@ -2,38 +2,28 @@
 
 #include "closed_loop/machine/machine_check.h"
 #include "closed_loop/report/machine_check_report.h"
-#include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
-#include "files/recording_csv.h"
 #include "files/text/whole.h"
 #include "tools/digloop/commands.h"
+#include "tools/digloop/recording.h"
 
 #include <assert.h>
 #include <stdio.h>
-
-static enum dig_status write_json(const char *const                     path,
-                                  const struct dig_check_subject *const subject,
-                                  struct dig_error *const               error)
-{
-    struct dig_out        out;
-    const enum dig_status status = dig_out_open(&out, path, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    dig_machine_check_json(subject, out.file);
-    return dig_out_commit(&out, error);
-}
 
 static enum dig_status write_results(const struct digloop_options *const   options,
                                      const struct dig_check_subject *const subject,
                                      struct dig_error *const               error)
 {
+    struct dig_out  out;
     enum dig_status status = DIG_OK;
     if (options->json_out != NULL) {
-        status = write_json(options->json_out, subject, error);
+        status = dig_out_open(&out, options->json_out, error);
+        if (status == DIG_OK) {
+            dig_machine_check_json(subject, out.file);
+            status = dig_out_commit(&out, error);
+        }
     }
     if (status == DIG_OK && options->html != NULL) {
-        struct dig_out out;
         status = dig_out_open(&out, options->html, error);
         if (status == DIG_OK) {
             status = dig_out_end(&out, dig_machine_check_html(subject, out.file, error), error);
@@ -46,15 +36,6 @@ static enum dig_status write_results(const struct digloop_options *const   optio
     return status;
 }
 
-// As it is: a pressure that is cut off, which other commands refuse, is the check's to say.
-static enum dig_status read_recording(const char *const                   path,
-                                      struct dig_machine_recording *const recording,
-                                      struct dig_error *const             error)
-{
-    return dig_lcm_log_is(path) ? dig_lcm_log_read(path, recording, error)
-                                : dig_machine_recording_read(path, recording, error);
-}
-
 enum dig_status digloop_check(const struct digloop_options *const options, bool *const wrong,
                               struct dig_error *const error)
 {
@@ -65,7 +46,7 @@ enum dig_status digloop_check(const struct digloop_options *const options, bool 
     struct dig_error             why       = { "" };
     enum dig_status              status    = dig_machine_read(options->table, &machine, error);
     if (status == DIG_OK) {
-        status = read_recording(options->recording[0], &recording, error);
+        status = digloop_read_samples(options->recording[0], &recording, error);
     }
     if (status == DIG_OK) {
         status = dig_machine_air_check_run(&machine, &recording, &check, &why);

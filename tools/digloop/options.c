@@ -24,32 +24,27 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
     if (results_on_stdout(o) > 1) {
         return dig_error_set(error, DIG_EINVAL, "two results on standard output, expected one");
     }
-    if (strcmp(o->command, "identify") == 0) {
-        return o->recordings >= 1 && o->recordings <= DIGLOOP_RECORDINGS_MAX
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL,
-                                   "identify: expected TABLE.sqlite and 1 to %d RECORDING",
-                                   DIGLOOP_RECORDINGS_MAX);
+    static const struct {
+        const char *command;
+        int         least, most; // recordings
+        const char *expected;
+    } of[] = {
+        { "identify", 1, DIGLOOP_RECORDINGS_MAX, "TABLE.sqlite and 1 to 64 RECORDING" },
+        { "predict", 0, 0, "TABLE.sqlite --identified ID.json --trajectory NAME" },
+        { "trace", 1, 1, "TABLE.sqlite CAMPAIGN/" },
+        { "check", 1, 1, "MACHINE.yaml RECORDING" },
+        { "design", 0, 0, "TABLE.sqlite" },
+    };
+    _Static_assert(DIGLOOP_RECORDINGS_MAX == 64, "the text says it");
+    size_t i = 0;
+    while (strcmp(o->command, of[i].command) != 0) {
+        i++;
     }
-    if (strcmp(o->command, "predict") == 0) {
-        return o->recordings == 0 && o->identified != NULL && o->trajectory != NULL
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL,
-                                   "predict: expected TABLE.sqlite --identified ID.json "
-                                   "--trajectory NAME");
-    }
-    if (strcmp(o->command, "check") == 0) {
-        return o->recordings == 1
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL, "check: expected MACHINE.yaml RECORDING");
-    }
-    if (strcmp(o->command, "trace") == 0) {
-        return o->recordings == 1
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL, "trace: expected TABLE.sqlite CAMPAIGN/");
-    }
-    return o->recordings == 0 ? DIG_OK
-                              : dig_error_set(error, DIG_EINVAL, "design: expected TABLE.sqlite");
+    const bool named =
+        strcmp(o->command, "predict") != 0 || (o->identified != NULL && o->trajectory != NULL);
+    return named && o->recordings >= of[i].least && o->recordings <= of[i].most
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL, "%s: expected %s", o->command, of[i].expected);
 }
 
 // One option into *o.

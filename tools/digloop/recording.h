@@ -24,7 +24,13 @@ struct digloop_machine {
     struct dig_correction correction;
 };
 
-/// A machine recording or an LCM log of the daemon. Refuses pressures that were cut off: what is
+/// A machine recording or an LCM log of the daemon, as it is.
+DIG_MUST_CHECK enum dig_status digloop_read_samples(const char                   *path,
+                                                    struct dig_machine_recording *recording,
+                                                    struct dig_error             *error);
+
+/// The same for what goes by the machine's forces. Refuses readings of another kind than the
+/// machine has, and pressures that were cut off: what is
 /// missing there would be taken for the soil's.
 DIG_MUST_CHECK enum dig_status digloop_read_machine(const char                   *path,
                                                     const struct dig_machine     *machine,

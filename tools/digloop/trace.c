@@ -59,26 +59,19 @@ enum dig_status digloop_load_effects(const struct digloop_options *const options
     return digloop_input(dig_effects_load(path, set, effects, error));
 }
 
-static enum dig_status write_json(const char *const path, const struct dig_trace *const trace,
-                                  struct dig_error *const error)
-{
-    struct dig_out        out;
-    const enum dig_status status = dig_out_open(&out, path, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    dig_trace_json(trace, out.file);
-    return dig_out_commit(&out, error);
-}
-
 static enum dig_status
 write_results(const struct digloop_options *const options, const struct dig_curve_set *const set,
               const char *const effects, const struct digloop_campaign *const campaign,
               const struct dig_trace *const trace, struct dig_error *const error)
 {
+    struct dig_out  out;
     enum dig_status status = DIG_OK;
     if (options->json_out != NULL) {
-        status = write_json(options->json_out, trace, error);
+        status = dig_out_open(&out, options->json_out, error);
+        if (status == DIG_OK) {
+            dig_trace_json(trace, out.file);
+            status = dig_out_commit(&out, error);
+        }
     }
     if (status == DIG_OK && options->html != NULL) {
         const struct dig_trace_subject subject = {
@@ -89,7 +82,6 @@ write_results(const struct digloop_options *const options, const struct dig_curv
             .digs     = campaign->digs,
             .measured = campaign->measured,
         };
-        struct dig_out out;
         status = dig_out_open(&out, options->html, error);
         if (status == DIG_OK) {
             status = dig_out_end(&out, dig_trace_html(trace, &subject, out.file, error), error);

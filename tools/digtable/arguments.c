@@ -5,6 +5,9 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "files/job_plan.h"
+#include "offline_dem/device/engine_cuda.h"
+#include "offline_dem/reference/engine_ode.h"
+#include "offline_dem/sweep/sweep.h"
 #include "tools/digtable/help.h"
 
 #include <getopt.h>
@@ -105,21 +108,29 @@ static const char *take_approach(const int option, const char *const value,
     return ok ? NULL : "degrees, -45 to 45";
 }
 
-static bool take_engine(const char *const value, enum dig_engine_choice *const engine)
+static bool take_engine(const char *const value, struct dig_arguments *const a)
 {
-    static const char *const names[] = {
-        [DIG_ENGINE_SINGLE] = "single",
-        [DIG_ENGINE_KERNEL] = "kernel",
-        [DIG_ENGINE_ODE]    = "ode",
-        [DIG_ENGINE_CUDA]   = "cuda",
+    static const struct {
+        const char *name;
+        struct dig_engine (*make)(void);
+    } engines[] = {
+        { "single", NULL }, // it takes a number of threads
+        { "kernel", dig_engine_kernel },
+        { "ode", dig_engine_ode },
+        { "cuda", dig_engine_cuda },
     };
-    for (size_t e = 0; e < sizeof names / sizeof names[0]; e++) {
-        if (strcmp(value, names[e]) == 0) {
-            *engine = (enum dig_engine_choice)e;
+    for (size_t e = 0; e < sizeof engines / sizeof engines[0]; e++) {
+        if (strcmp(value, engines[e].name) == 0) {
+            a->engine = engines[e].make;
             return true;
         }
     }
     return false;
+}
+
+struct dig_engine dig_cli_engine(const struct dig_arguments *const a)
+{
+    return a->engine != NULL ? a->engine() : dig_engine_single(a->threads);
 }
 
 // --time 1:00:00 is two words for sbatch, --sbatch-arg one.
@@ -147,55 +158,43 @@ static const char *take_submit_option(const int option, const char *const value,
 static const char *take_option(const int option, const char *const value,
                                struct dig_arguments *const a)
 {
-    bool ok = true;
     switch (option) {
     case OPTION_OUTPUT: a->output = value; break;
     case OPTION_QUIET: a->quiet = true; break;
-    case OPTION_JOBS:
-        ok = dig_cli_count(value, 1, 4096, &a->workers);
-        return ok ? NULL : "1 to 4096";
-    case OPTION_THREADS:
-        ok = dig_cli_count(value, 1, 256, &a->threads);
-        return ok ? NULL : "1 to 256";
+    case OPTION_JOBS: return dig_cli_count(value, 1, 4096, &a->workers) ? NULL : "1 to 4096";
+    case OPTION_THREADS: return dig_cli_count(value, 1, 256, &a->threads) ? NULL : "1 to 256";
     case OPTION_TRAJECTORY: a->trajectory = value; break;
     case OPTION_FRICTION:
-        ok = dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_FRICTION]);
-        return ok ? NULL : "0 to 3";
+        return dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_FRICTION]) ? NULL : "0 to 3";
     case OPTION_ROLLING:
-        ok = dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_ROLLING]);
-        return ok ? NULL : "0 to 3";
+        return dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_ROLLING]) ? NULL : "0 to 3";
     case OPTION_DENSITY:
-        ok = dig_number_read(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3]);
-        return ok ? NULL : "kg/m3, 100 to 20000";
+        return dig_number_read(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3])
+                   ? NULL
+                   : "kg/m3, 100 to 20000";
     case OPTION_DEPTH:
     case OPTION_ATTACK: return take_approach(option, value, &a->approach);
     case OPTION_YOUNG:
-        ok = dig_number_read(value, 1.0, 1e12, &a->young_Pa);
-        return ok ? NULL : "Pa, 1 to 1e12";
+        return dig_number_read(value, 1.0, 1e12, &a->young_Pa) ? NULL : "Pa, 1 to 1e12";
     case OPTION_SEED:
-        ok = dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed);
-        return ok ? NULL : "a whole number below 2^63";
-    case OPTION_ENGINE:
-        return take_engine(value, &a->engine) ? NULL : "single, kernel, ode or cuda";
+        return dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed)
+                   ? NULL
+                   : "a whole number below 2^63";
+    case OPTION_ENGINE: return take_engine(value, a) ? NULL : "single, kernel, ode or cuda";
     case OPTION_BED: a->bed = value; break;
     case OPTION_SAVE_BED: a->save_bed = value; break;
     case OPTION_VTK: a->vtk = value; break;
     case OPTION_MAP: a->map = value; break;
-    case OPTION_PACKINGS:
-        ok = dig_cli_count(value, 1, 1000, &a->packings);
-        return ok ? NULL : "1 to 1000";
+    case OPTION_PACKINGS: return dig_cli_count(value, 1, 1000, &a->packings) ? NULL : "1 to 1000";
     case OPTION_TIME_LIMIT:
-        ok = dig_number_read(value, 0.0, 1e9, &a->time_limit_s);
-        return ok ? NULL : "seconds, >= 0";
+        return dig_number_read(value, 0.0, 1e9, &a->time_limit_s) ? NULL : "seconds, >= 0";
     case OPTION_SHARD: return parse_shard(value, a) ? NULL : "I/N, I from 1 to N";
     case OPTION_TASKS:
     case OPTION_SLURM:
     case OPTION_TIME:
     case OPTION_PARTITION:
     case OPTION_SBATCH_ARG: return take_submit_option(option, value, a);
-    case OPTION_CHANNEL:
-        ok = parse_channel(value, &a->channel);
-        return ok ? NULL : "My, Fx, Fz or carried";
+    case OPTION_CHANNEL: return parse_channel(value, &a->channel) ? NULL : "My, Fx, Fz or carried";
     case OPTION_CSV: a->csv = true; break;
     case OPTION_JSON: a->json = true; break;
     case OPTION_RUNS: a->runs = true; break;
@@ -254,7 +253,7 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
         }
         a->positional[a->positionals++] = argv[optind];
     }
-    if (a->threads > 0 && a->engine != DIG_ENGINE_SINGLE) {
+    if (a->threads > 0 && a->engine != NULL) {
         return dig_cli_bad_usage("--threads: only --engine single has them");
     }
     if (a->threads == 0) {

@@ -16,27 +16,26 @@ enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 #define DIG_POSITIONALS_MAX   1024 // tables to merge
 #define DIG_SLURM_OPTIONS_MAX 32   // words for sbatch
 
-/// Engines of --engine; the first is the default.
-enum dig_engine_choice { DIG_ENGINE_SINGLE, DIG_ENGINE_KERNEL, DIG_ENGINE_ODE, DIG_ENGINE_CUDA };
+struct dig_engine; // offline_dem/sweep/sweep.h
 
 /// Every option of every command, with its default where it was not given.
 struct dig_arguments {
-    const char            *positional[DIG_POSITIONALS_MAX];
-    int                    positionals;
-    const char            *output, *trajectory, *bed, *save_bed, *vtk, *map;
-    double                 gravel[DIG_AXES];        // NaN: not given
-    struct dig_approach    approach;                // plain: not given
-    double                 young_Pa;                // NaN: the scene's
-    unsigned long          seed, workers, packings; // 0 packings: the grid's
-    unsigned long          threads;                 // of --engine single
-    unsigned long          shard, shards;           // from 0; 0 shards: all
-    unsigned long          tasks;                   // 0: not given
-    const char            *slurm_option[DIG_SLURM_OPTIONS_MAX];
-    size_t                 slurm_options;
-    double                 time_limit_s;
-    enum dig_channel       channel;
-    enum dig_engine_choice engine;
-    bool                   csv, json, runs, effects, complete, quiet, slurm;
+    const char         *positional[DIG_POSITIONALS_MAX];
+    int                 positionals;
+    const char         *output, *trajectory, *bed, *save_bed, *vtk, *map;
+    double              gravel[DIG_AXES];        // NaN: not given
+    struct dig_approach approach;                // plain: not given
+    double              young_Pa;                // NaN: the scene's
+    unsigned long       seed, workers, packings; // 0 packings: the grid's
+    unsigned long       threads;                 // of --engine single
+    unsigned long       shard, shards;           // from 0; 0 shards: all
+    unsigned long       tasks;                   // 0: not given
+    const char         *slurm_option[DIG_SLURM_OPTIONS_MAX];
+    size_t              slurm_options;
+    double              time_limit_s;
+    enum dig_channel    channel;
+    struct dig_engine (*engine)(void); // NULL: the single one
+    bool csv, json, runs, effects, complete, quiet, slurm;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };
@@ -45,6 +44,9 @@ struct dig_arguments {
 /// version and exits where asked to.
 int dig_arguments_read(const struct dig_command *command, int argc, char **argv,
                        struct dig_arguments *a);
+
+/// The engine that --engine names.
+struct dig_engine dig_cli_engine(const struct dig_arguments *a);
 
 /// A whole number without sign, within the range.
 bool dig_cli_count(const char *text, unsigned long least, unsigned long most, unsigned long *value);

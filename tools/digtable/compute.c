@@ -9,7 +9,6 @@
 #include "offline_dem/sweep/sweep.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
-#include "tools/digtable/engine.h"
 #include "tools/digtable/plan.h"
 #include "tools/digtable/progress.h"
 #include "tools/digtable/saved_bed.h"

@@ -18,20 +18,16 @@
 
 // Results go to stdout, or whole or not at all to -o.
 static int with_output(const struct dig_arguments *const a,
-                       enum dig_status (*const write)(const void *context, FILE *file,
+                       enum dig_status (*const write)(void *context, FILE *file,
                                                       struct dig_error *error),
-                       const void *const context)
+                       void *const context)
 {
-    struct dig_error error  = { "" };
-    struct dig_out   out    = { .file = NULL };
+    struct dig_error error = { "" };
+    struct dig_out   out;
     enum dig_status  status = dig_out_open(&out, a->output != NULL ? a->output : "-", &error);
     if (status == DIG_OK) {
-        status = write(context, out.file, &error);
+        status = dig_out_end(&out, write(context, out.file, &error), &error);
     }
-    if (status == DIG_OK) {
-        status = dig_out_commit(&out, &error);
-    }
-    dig_out_cancel(&out);
     return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
 }
 
@@ -238,7 +234,7 @@ struct curves_to_write {
     struct dig_effect_set *effects;
 };
 
-static enum dig_status write_curves(const void *const context, FILE *const file,
+static enum dig_status write_curves(void *const context, FILE *const file,
                                     struct dig_error *const error)
 {
     (void)error;
@@ -251,28 +247,23 @@ static enum dig_status write_curves(const void *const context, FILE *const file,
     return DIG_OK;
 }
 
-struct runs_to_write {
-    struct dig_store *store;
-};
-
-static enum dig_status write_runs(const void *const context, FILE *const file,
+static enum dig_status write_runs(void *const store, FILE *const file,
                                   struct dig_error *const error)
 {
-    const struct runs_to_write *const runs = context;
-    return dig_export_runs(runs->store, file, error);
+    return dig_export_runs(store, file, error);
 }
 
 int dig_cli_export(const struct dig_arguments *const a)
 {
     struct dig_error error = { "" };
     if (a->runs) {
-        struct runs_to_write  runs   = { NULL };
-        const enum dig_status status = dig_store_open(a->positional[0], &runs.store, &error);
+        struct dig_store     *store  = NULL;
+        const enum dig_status status = dig_store_open(a->positional[0], &store, &error);
         if (status != DIG_OK) {
             return dig_cli_bad_input(status, &error);
         }
-        const int code = with_output(a, write_runs, &runs);
-        dig_store_close(runs.store);
+        const int code = with_output(a, write_runs, store);
+        dig_store_close(store);
         return code;
     }
     struct curves_to_write curves = { .varied = a->effects };

@@ -3,7 +3,6 @@
 
 #include "core/text.h"
 #include "tools/digtable/commands.h"
-#include "tools/digtable/engine.h"
 #include "tools/digtable/job_folder.h"
 #include "tools/digtable/job_script.h"
 #include "tools/digtable/job_state.h"
