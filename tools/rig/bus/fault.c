@@ -79,26 +79,29 @@ enum dig_status dig_rig_fault_parse(const char *const text, struct dig_rig_fault
         text);
 }
 
-bool dig_rig_fault_is_on(const size_t faults, const struct dig_rig_fault fault[],
-                         const enum dig_rig_fault_kind kind, const double time_s)
+// The fault of that kind that is on; NULL: none is.
+static const struct dig_rig_fault *find(const size_t faults, const struct dig_rig_fault fault[],
+                                        const enum dig_rig_fault_kind kind, const double time_s)
 {
     for (size_t i = 0; i < faults; i++) {
         if (fault[i].kind == kind && time_s >= fault[i].begin_s && time_s < fault[i].end_s) {
-            return true;
+            return &fault[i];
         }
     }
-    return false;
+    return NULL;
+}
+
+bool dig_rig_fault_is_on(const size_t faults, const struct dig_rig_fault fault[],
+                         const enum dig_rig_fault_kind kind, const double time_s)
+{
+    return find(faults, fault, kind, time_s) != NULL;
 }
 
 double dig_rig_fault_amount(const size_t faults, const struct dig_rig_fault fault[],
                             const enum dig_rig_fault_kind kind, const double time_s)
 {
-    for (size_t i = 0; i < faults; i++) {
-        if (fault[i].kind == kind && time_s >= fault[i].begin_s && time_s < fault[i].end_s) {
-            return fault[i].amount;
-        }
-    }
-    return 0.0;
+    const struct dig_rig_fault *const on = find(faults, fault, kind, time_s);
+    return on != NULL ? on->amount : 0.0;
 }
 
 void dig_rig_fault_spoil(const size_t faults, const struct dig_rig_fault fault[],

@@ -21,6 +21,8 @@ static const double most_mps2      = 0.7;
 static const double most_radps2    = 1.0;
 static const double quintic_factor = 5.7735; // peak acceleration of a rest-to-rest move, T^2 / way
 
+static const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
+
 struct builder {
     struct dig_rig_frame *frame;
     size_t                frames;
@@ -113,9 +115,15 @@ static bool move(struct builder *const builder, const struct state *const from,
     return move_in(builder, from, to, duration_s(from, to), soil, load);
 }
 
+// The same with an empty bucket.
+static bool go(struct builder *const builder, const struct state *const from,
+               const struct state *const to)
+{
+    return move(builder, from, to, none, LOAD_HELD);
+}
+
 static bool hold(struct builder *const builder, const struct state *const at)
 {
-    const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
     return move_in(builder, at, at, hold_s, none, LOAD_HELD);
 }
 
@@ -207,17 +215,15 @@ static struct state rest(const double X_m, const double Z_m, const double phi_ra
 static bool approach(struct builder *const builder, const struct state *const contact,
                      const double tooth_m, struct state *const now)
 {
-    const struct dig_rig_wrench none  = { 0.0, 0.0, 0.0 };
-    const double                X_m   = contact->at[0];
-    const double                Z_m   = contact->at[1];
-    const double                phi   = contact->at[2];
-    const struct state          hover = rest(X_m, Z_m + hover_teeth * tooth_m, phi - swing_rad);
-    const struct state          dip   = rest(X_m + 0.15 * tooth_m, Z_m + dip_teeth * tooth_m, phi);
+    const double       X_m   = contact->at[0];
+    const double       Z_m   = contact->at[1];
+    const double       phi   = contact->at[2];
+    const struct state hover = rest(X_m, Z_m + hover_teeth * tooth_m, phi - swing_rad);
+    const struct state dip   = rest(X_m + 0.15 * tooth_m, Z_m + dip_teeth * tooth_m, phi);
 
-    const bool ok = (builder->frames == 0 || move(builder, now, &hover, none, LOAD_HELD)) &&
-                    hold(builder, &hover) && move(builder, &hover, &dip, none, LOAD_HELD) &&
-                    move(builder, &dip, &hover, none, LOAD_HELD) &&
-                    move(builder, &hover, contact, none, LOAD_HELD);
+    const bool ok = (builder->frames == 0 || go(builder, now, &hover)) && hold(builder, &hover) &&
+                    go(builder, &hover, &dip) && go(builder, &dip, &hover) &&
+                    go(builder, &hover, contact);
     if (ok) {
         builder->frames--; // the recording's first row is the contact itself
     }
@@ -229,7 +235,6 @@ static bool leave(struct builder *const builder, const struct state *const end,
                   const double ground_Z_m, const double tooth_m, struct state *const now)
 {
     const struct dig_rig_wrench load = builder->frame[builder->frames - 1].soil;
-    const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
     const double       Z_m  = fmax(end->at[1] + 0.3 * tooth_m, ground_Z_m + clear_teeth * tooth_m);
     const double       phi  = end->at[2];
     const double       dump = fmax(dump_phi_rad, phi + dump_more_rad);
@@ -240,18 +245,16 @@ static bool leave(struct builder *const builder, const struct state *const end,
 
     *now = lowered;
     return move(builder, end, &lifted, load, LOAD_HELD) &&
-           move(builder, &lifted, &dumped, load, LOAD_FADING) &&
-           move(builder, &dumped, &curled, none, LOAD_HELD) &&
-           move(builder, &curled, &lowered, none, LOAD_HELD);
+           move(builder, &lifted, &dumped, load, LOAD_FADING) && go(builder, &dumped, &curled) &&
+           go(builder, &curled, &lowered);
 }
 
 // Back to where the whole path began, so that it can be played in a loop.
 static bool go_home(struct builder *const builder, const struct state *const now)
 {
-    const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
-    const struct dig_rig_pose   home = builder->frame[0].pose;
-    const struct state          to   = rest(home.X_m, home.Z_m, home.phi_rad);
-    return move(builder, now, &to, none, LOAD_HELD) && hold(builder, &to);
+    const struct dig_rig_pose home = builder->frame[0].pose;
+    const struct state        to   = rest(home.X_m, home.Z_m, home.phi_rad);
+    return go(builder, now, &to) && hold(builder, &to);
 }
 
 static bool add_dig(struct builder *const builder, const struct dig_rig_path_options *const options,

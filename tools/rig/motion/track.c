@@ -177,15 +177,6 @@ static enum dig_status fill_driven(const struct dig_machine *const           mac
     return track->nearest.share > 0.0 ? DIG_OK : refuse(machine, &track->nearest, worst_s, error);
 }
 
-static enum dig_status fill(const struct dig_machine *const           machine,
-                            const struct dig_rig_track_options *const options,
-                            const struct dig_rig_path *const path, const size_t every,
-                            struct dig_rig_track *const track, struct dig_error *const error)
-{
-    return machine->sensor.fitted ? fill_sensed(machine, options, path, every, track, error)
-                                  : fill_driven(machine, options, path, every, track, error);
-}
-
 // The rows of a path, placed, or where the machine has most room.
 static enum dig_status lay(const struct dig_machine *const           machine,
                            const struct dig_rig_track_options *const options,
@@ -208,8 +199,10 @@ static enum dig_status lay(const struct dig_machine *const           machine,
     }
     if (status == DIG_OK) {
         result.row = malloc(result.rows * sizeof result.row[0]);
-        status     = result.row != NULL ? fill(machine, options, path, every, &result, error)
-                                        : dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows);
+        status     = result.row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
+                     : machine->sensor.fitted
+                         ? fill_sensed(machine, options, path, every, &result, error)
+                         : fill_driven(machine, options, path, every, &result, error);
     }
     if (status != DIG_OK) {
         free(result.row);
