@@ -5,6 +5,7 @@
 #include "core/text.h"
 
 #include <assert.h>
+#include <string.h>
 
 enum { COLUMNS = 80, ANSWER = 39, SENTENCE = 4000 };
 
@@ -13,10 +14,7 @@ static void put_wrapped(FILE *const to, const int first, const int indent, const
 {
     int column = first;
     while (*text != '\0') {
-        int word = 0;
-        while (text[word] != '\0' && text[word] != ' ') {
-            word++;
-        }
+        const int word = (int)strcspn(text, " ");
         if (column > indent && column + 1 + word > COLUMNS) {
             (void)fprintf(to, "\n%*s", indent, "");
             column = indent;
@@ -24,14 +22,10 @@ static void put_wrapped(FILE *const to, const int first, const int indent, const
             (void)fputc(' ', to);
             column++;
         }
-        for (int i = 0; i < word; i++) {
-            (void)fputc(text[i], to);
-        }
+        (void)fprintf(to, "%.*s", word, text);
         column += word;
         text += word;
-        while (*text == ' ') {
-            text++;
-        }
+        text += strspn(text, " ");
     }
     (void)fputc('\n', to);
 }

@@ -24,40 +24,34 @@ struct published {
     struct dig_predicted_curve curve;
 };
 
-// A log holds what anybody on the network sent.
-static bool are_finite(const size_t n, const double number[])
-{
-    size_t i = 0;
-    while (i < n && isfinite(number[i])) {
-        i++;
-    }
-    return i == n;
-}
-
 static void take_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
 {
     (void)time_us;
     struct published *const published = context;
-    const double            number[]  = { m->friction,         m->rolling,         m->density_kgpm3,
-                                          m->friction_low,     m->rolling_low,     m->density_low_kgpm3,
-                                          m->friction_high,    m->rolling_high,    m->density_high_kgpm3,
-                                          m->nearest_friction, m->nearest_rolling, m->nearest_density_kgpm3,
-                                          m->distance };
-    if (!m->valid || m->going_on || published->predicted ||
-        !are_finite(sizeof number / sizeof number[0], number)) {
-        return; // a later match is of a later dig
+    const struct dig_gravel gravel[]  = {
+         { { m->friction, m->rolling, m->density_kgpm3 } },
+         { { m->friction_low, m->rolling_low, m->density_low_kgpm3 } },
+         { { m->friction_high, m->rolling_high, m->density_high_kgpm3 } },
+         { { m->nearest_friction, m->nearest_rolling, m->nearest_density_kgpm3 } },
+    };
+    bool finite = isfinite(m->distance);
+    for (size_t i = 0; i < sizeof gravel / sizeof gravel[0]; i++) {
+        for (int a = 0; a < DIG_AXES; a++) {
+            finite = finite && isfinite(gravel[i].value[a]);
+        }
+    }
+    // A later match is of a later dig. A log holds what anybody on the network sent.
+    if (!m->valid || m->going_on || published->predicted || !finite) {
+        return;
     }
     published->matched     = true;
     published->forces      = m->forces != 0;
     published->matched_dig = (uint32_t)m->dig_count;
-    published->gravel      = (struct dig_gravel){ { m->friction, m->rolling, m->density_kgpm3 } };
-    published->low =
-        (struct dig_gravel){ { m->friction_low, m->rolling_low, m->density_low_kgpm3 } };
-    published->high =
-        (struct dig_gravel){ { m->friction_high, m->rolling_high, m->density_high_kgpm3 } };
-    published->nearest  = (struct dig_gravel){ { m->nearest_friction, m->nearest_rolling,
-                                                 m->nearest_density_kgpm3 } };
-    published->distance = m->distance;
+    published->gravel      = gravel[0];
+    published->low         = gravel[1];
+    published->high        = gravel[2];
+    published->nearest     = gravel[3];
+    published->distance    = m->distance;
 }
 
 // The first prediction of the dig: the one that was made before most of it was dug.

@@ -1,6 +1,6 @@
 // digtable status.
 
-#include "core/text.h"
+#include "closed_loop/report/json.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/job_state.h"
 #include "tools/digtable/progress.h"
@@ -53,39 +53,28 @@ static void put_text(const struct status *const s)
     }
 }
 
-static void put_number(const char *const key, const double value)
-{
-    if (isfinite(value)) {
-        (void)printf(" \"%s\": %.6g,\n", key, value);
-    } else {
-        (void)printf(" \"%s\": null,\n", key);
-    }
-}
-
 static void put_json(const struct status *const s)
 {
     char        words[300];
     const char *gap = "";
-    (void)printf("{\"table\": ");
-    dig_text_put_json(stdout, s->folder.table);
+    dig_json_text(stdout, "{", "table", s->folder.table);
     (void)printf(",\n \"job\": \"%s\",\n \"shards\": %zu,\n", s->folder.plan.job,
                  s->folder.plan.tasks);
     for (enum dig_shard_state state = DIG_SHARD_WAITING; state < DIG_SHARD_STATES; state++) {
         (void)printf(" \"%s\": %zu,\n", dig_shard_state_name(state), s->state.count[state]);
     }
-    (void)printf(" \"merge\": \"%s\",\n \"digs\": %zu,\n \"digs_done\": %zu,\n",
+    (void)printf(" \"merge\": \"%s\",\n \"digs\": %zu,\n \"digs_done\": %zu",
                  dig_shard_state_name(s->state.shard[DIG_JOB_MERGE]), s->progress.digs,
                  s->progress.digs_done);
-    put_number("dig_s", s->progress.dig_s);
-    put_number("left_s", s->progress.left_s);
-    (void)printf(" \"failures\": [");
+    dig_json_member(stdout, ",\n ", "dig_s", s->progress.dig_s);
+    dig_json_member(stdout, ",\n ", "left_s", s->progress.left_s);
+    (void)printf(",\n \"failures\": [");
     for (size_t task = 0; task <= s->folder.plan.tasks; task++) {
         if (s->state.shard[task] == DIG_SHARD_FAILED) {
             words_of(s, task, words);
             (void)printf("%s\n  {\"shard\": ", gap);
             (void)printf(task == DIG_JOB_MERGE ? "\"merge\"" : "%zu", task);
-            (void)printf(", \"error\": ");
-            dig_text_put_json(stdout, words);
+            dig_json_text(stdout, ", ", "error", words);
             (void)printf("}");
             gap = ",";
         }

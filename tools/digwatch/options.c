@@ -42,8 +42,7 @@ enum dig_status digwatch_parse(const int argc, char *argv[], struct digwatch_opt
                                struct dig_error *const error)
 {
     assert(argv != NULL && options != NULL);
-    struct digwatch_options o     = { .url = NULL };
-    char                   *end   = NULL;
+    struct digwatch_options o     = { .speed = 1.0 };
     const char             *speed = NULL;
     for (int c;
          (c = dig_option_next(&program, &program.self, argc, argv, error)) != DIG_OPTION_END;) {
@@ -62,8 +61,7 @@ enum dig_status digwatch_parse(const int argc, char *argv[], struct digwatch_opt
         return dig_error_set(error, DIG_EINVAL, "%s: expected options alone (a log: --log %s)",
                              argv[optind], argv[optind]);
     }
-    o.speed = speed != NULL ? strtod(speed, &end) : 1.0;
-    if (speed != NULL && (end == speed || *end != '\0' || !(o.speed >= 0.01 && o.speed <= 1e4))) {
+    if (speed != NULL && !dig_number_read(speed, 0.01, 1e4, &o.speed)) {
         return dig_error_set(error, DIG_EINVAL, "--speed %s: expected 0.01 to 10000", speed);
     }
     if ((o.log != NULL && (o.url != NULL || o.prometheus != NULL)) ||

@@ -6,11 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Where a joint goes, as a share of its range.
-static const double low  = 0.15;
-static const double mid  = 0.5;
-static const double high = 0.85;
-
 static const double hold_s      = 0.5;
 static const double most_radps  = 0.5;
 static const double most_radps2 = 0.8;
@@ -18,40 +13,27 @@ static const double most_radps2 = 0.8;
 static const double rate_factor         = 1.875;
 static const double acceleration_factor = 5.7735;
 
-enum { ALONE = 3, TOGETHER = 4, MOVES = ALONE * DIG_JOINTS + TOGETHER + 1 };
+enum { MOVES = 14 };
 
+// Where the front rests, in order: boom, arm and bucket as a share of their range.
 struct stop {
     double share[DIG_JOINTS];
 };
 
-// Where the front rests, in order; the first and the last are the middle.
-static void list_stops(struct stop stop[MOVES + 1])
-{
-    static const struct stop middle             = { { mid, mid, mid } };
-    static const double      alone[ALONE]       = { low, high, mid };
-    static const struct stop together[TOGETHER] = { { { high, low, high } },
-                                                    { { low, high, low } },
-                                                    { { 0.7, 0.7, 0.3 } },
-                                                    { { 0.4, 0.3, 0.7 } } };
-    size_t                   n                  = 0;
-    stop[n++]                                   = middle;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        for (int k = 0; k < ALONE; k++) {
-            stop[n]            = middle;
-            stop[n++].share[j] = alone[k];
-        }
-    }
-    for (int k = 0; k < TOGETHER; k++) {
-        stop[n++] = together[k];
-    }
-    stop[n] = middle;
-}
+static const struct stop stop[MOVES + 1] = {
+    { { 0.5, 0.5, 0.5 } },    { { 0.15, 0.5, 0.5 } },                           // boom alone
+    { { 0.85, 0.5, 0.5 } },   { { 0.5, 0.5, 0.5 } },  { { 0.5, 0.15, 0.5 } },   // arm
+    { { 0.5, 0.85, 0.5 } },   { { 0.5, 0.5, 0.5 } },  { { 0.5, 0.5, 0.15 } },   // bucket
+    { { 0.5, 0.5, 0.85 } },   { { 0.5, 0.5, 0.5 } },  { { 0.85, 0.15, 0.85 } }, // all three
+    { { 0.15, 0.85, 0.15 } }, { { 0.7, 0.7, 0.3 } },  { { 0.4, 0.3, 0.7 } },
+    { { 0.5, 0.5, 0.5 } },
+};
 
-static double angle_rad(const struct dig_machine *const machine, const struct stop *const stop,
+static double angle_rad(const struct dig_machine *const machine, const struct stop *const at,
                         const int joint)
 {
     const struct dig_link *const link = &machine->link[joint];
-    return link->min_rad + stop->share[joint] * (link->max_rad - link->min_rad);
+    return link->min_rad + at->share[joint] * (link->max_rad - link->min_rad);
 }
 
 // Frames of a move from one stop to another.
@@ -92,8 +74,6 @@ enum dig_status dig_rig_air_build(const struct dig_machine *const machine,
     }
     const size_t rest = (size_t)lround(hold_s / DIG_RIG_STEP_s);
     size_t       room = rest;
-    struct stop  stop[MOVES + 1];
-    list_stops(stop);
     for (size_t m = 0; m < MOVES; m++) {
         room += frames_of(machine, &stop[m], &stop[m + 1]) + rest;
     }
