@@ -14,22 +14,27 @@
 static enum dig_status run(const struct digloop_options *const options,
                            struct dig_curve_set *const set, struct dig_error *const error)
 {
+    static const struct {
+        const char *command;
+        enum dig_status (*run)(const struct digloop_job *job, struct dig_error *error);
+    } of[] = {
+        { "identify", digloop_identify },
+        { "predict", digloop_predict },
+        { "design", digloop_design },
+        { "trace", digloop_trace },
+    };
     struct digloop_machine machine;
-    const enum dig_status  status           = digloop_load_machine(options, set, &machine, error);
-    const struct digloop_machine *const any = options->machine != NULL ? &machine : NULL;
+    struct digloop_job     job    = { .options = options, .set = set };
+    const enum dig_status  status = digloop_load_machine(&job, &machine, error);
     if (status != DIG_OK) {
         return status;
     }
-    if (strcmp(options->command, "identify") == 0) {
-        return digloop_identify(options, set, any, error);
+    job.machine = options->machine != NULL ? &machine : NULL;
+    size_t i    = 0;
+    while (strcmp(options->command, of[i].command) != 0) {
+        i++;
     }
-    if (strcmp(options->command, "predict") == 0) {
-        return digloop_predict(options, set, any, error);
-    }
-    if (strcmp(options->command, "design") == 0) {
-        return digloop_design(options, set, error);
-    }
-    return digloop_trace(options, set, error);
+    return of[i].run(&job, error);
 }
 
 // Once for every command: all of them go by the table's curves.

@@ -38,23 +38,21 @@ static enum dig_status fill_heads(const struct dig_campaign *const  from,
 // A force recording as it would be of a dig in a scene lambda times smaller, by Froude similarity.
 static void shrink(struct dig_recording *const recording, const double lambda)
 {
-    const double time  = sqrt(lambda);
-    const double force = lambda * lambda * lambda;
+    const double time   = sqrt(lambda);
+    const double force  = lambda * lambda * lambda; // and masses
+    const double moment = force * lambda;
     for (size_t i = 0; i < recording->rows; i++) {
-        struct dig_force_row *const row      = &recording->row[i];
-        double *const               length[] = { &row->pin_x_m, &row->pin_z_m };
-        double *const weight[] = { &row->Fx_N, &row->Fy_N, &row->Fz_N, &row->carried_kg };
-        double *const moment[] = { &row->Mx_Nm, &row->My_Nm, &row->Mz_Nm };
+        struct dig_force_row *const row = &recording->row[i];
         row->t_s /= time;
-        for (size_t k = 0; k < sizeof length / sizeof length[0]; k++) {
-            *length[k] /= lambda;
-        }
-        for (size_t k = 0; k < sizeof weight / sizeof weight[0]; k++) {
-            *weight[k] /= force;
-        }
-        for (size_t k = 0; k < sizeof moment / sizeof moment[0]; k++) {
-            *moment[k] /= force * lambda;
-        }
+        row->pin_x_m /= lambda;
+        row->pin_z_m /= lambda;
+        row->Fx_N /= force;
+        row->Fy_N /= force;
+        row->Fz_N /= force;
+        row->carried_kg /= force;
+        row->Mx_Nm /= moment;
+        row->My_Nm /= moment;
+        row->Mz_Nm /= moment;
     }
 }
 
@@ -91,10 +89,10 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
     return DIG_OK;
 }
 
-static enum dig_status load_machine(const struct dig_campaign *const from, const char *const table,
-                                    const struct dig_curve_set *const set,
-                                    struct digloop_campaign *const    campaign,
-                                    struct dig_error *const           error)
+static enum dig_status load_machine(const struct digloop_job *const  job,
+                                    const struct dig_campaign *const from,
+                                    struct digloop_campaign *const   campaign,
+                                    struct dig_error *const          error)
 {
     if (from->machine[0] == '\0') {
         return dig_error_set(error, DIG_EINVAL,
@@ -114,15 +112,15 @@ static enum dig_status load_machine(const struct dig_campaign *const from, const
                                from->machine);
     }
     if (status == DIG_OK) {
-        status = digloop_check_bucket(from->machine, &machine, table, set, error);
+        status = digloop_check_bucket(job, from->machine, &machine, error);
     }
-    campaign->lambda = machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    campaign->lambda = machine.link[DIG_JOINT_BUCKET].length_m / job->set->tooth_m;
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         const char *const file = from->recording[i].file;
         status                 = digloop_read_machine(file, &machine, &recording[i], error);
     }
     if (status == DIG_OK) {
-        status = dig_machine_side_create(&machine, set, from->recordings, recording,
+        status = dig_machine_side_create(&machine, job->set, from->recordings, recording,
                                          campaign->measured, &campaign->machine, error);
     }
     for (size_t i = 0; i < from->recordings; i++) {
@@ -152,8 +150,8 @@ static enum dig_status check_kinds(const struct dig_campaign *const from,
     return DIG_OK;
 }
 
-static enum dig_status load(const struct dig_campaign *const from, const char *const table,
-                            const struct dig_curve_set *const set,
+static enum dig_status load(const struct digloop_job *const  job,
+                            const struct dig_campaign *const from,
                             struct digloop_campaign *const campaign, struct dig_error *const error)
 {
     campaign->digs     = from->recordings;
@@ -162,9 +160,9 @@ static enum dig_status load(const struct dig_campaign *const from, const char *c
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     double          scale  = 1.0; // of force recordings; a machine knows its own
-    enum dig_status status = digloop_check_scene(from->scene, table, set, &scale, error);
+    enum dig_status status = digloop_check_scene(job, from->scene, &scale, error);
     if (status == DIG_OK) {
-        status = fill_heads(from, set, campaign->measured, error);
+        status = fill_heads(from, job->set, campaign->measured, error);
     }
     if (status == DIG_OK) {
         status = check_kinds(from, error);
@@ -173,29 +171,28 @@ static enum dig_status load(const struct dig_campaign *const from, const char *c
         return status;
     }
     if (!digloop_is_force_recording(from->recording[0].file)) {
-        return load_machine(from, table, set, campaign, error);
+        return load_machine(job, from, campaign, error);
     }
     campaign->lambda = scale;
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
-        status = measure_force(&from->recording[i], set, scale, &campaign->measured[i], error);
+        status = measure_force(&from->recording[i], job->set, scale, &campaign->measured[i], error);
     }
     return status;
 }
 
-enum dig_status digloop_campaign_load(const char *const folder, const char *const table,
-                                      const struct dig_curve_set *const set,
-                                      struct digloop_campaign *const    campaign,
-                                      struct dig_error *const           error)
+enum dig_status digloop_campaign_load(const struct digloop_job *const job,
+                                      struct digloop_campaign *const  campaign,
+                                      struct dig_error *const         error)
 {
-    assert(folder != NULL && set != NULL && campaign != NULL);
+    assert(job != NULL && campaign != NULL);
     struct digloop_campaign    loaded = { .digs = 0 };
     struct dig_campaign *const from   = calloc(1, sizeof *from);
     if (from == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    enum dig_status status = dig_campaign_read(folder, from, error);
+    enum dig_status status = dig_campaign_read(job->options->recording[0], from, error);
     if (status == DIG_OK) {
-        status = load(from, table, set, &loaded, error);
+        status = load(job, from, &loaded, error);
     }
     free(from);
     if (status != DIG_OK) {

@@ -7,6 +7,7 @@
 #include "closed_loop/recordings/measured.h"
 #include "core/curve.h"
 #include "core/error.h"
+#include "tools/digloop/commands.h"
 
 struct digloop_campaign {
     size_t                   digs;
@@ -15,15 +16,14 @@ struct digloop_campaign {
     struct dig_machine_side *machine;  // NULL: the digs are force recordings
 };
 
-/// Reads FOLDER/campaign.yaml, its recordings and its machine. Refuses a scene that is not similar
-/// to that of the table, a file, and a machine whose bucket is not of its shape, a dig that is not
-/// along the trajectory named for it, force and machine recordings mixed; *error names file and
-/// reason. Force recordings in a scene that is the table's at another size are taken to the
-/// table's. Free with digloop_campaign_finish().
-DIG_MUST_CHECK enum dig_status digloop_campaign_load(const char *folder, const char *table,
-                                                     const struct dig_curve_set *set,
-                                                     struct digloop_campaign    *campaign,
-                                                     struct dig_error           *error);
+/// Reads campaign.yaml of the folder that the job names, its recordings and its machine. Refuses a
+/// scene that is not similar to that of the table, a file, and a machine whose bucket is not of its
+/// shape, a dig that is not along the trajectory named for it, force and machine recordings mixed;
+/// *error names file and reason. Force recordings in a scene that is the table's at another size
+/// are taken to the table's. Free with digloop_campaign_finish().
+DIG_MUST_CHECK enum dig_status digloop_campaign_load(const struct digloop_job *job,
+                                                     struct digloop_campaign  *campaign,
+                                                     struct dig_error         *error);
 
 void digloop_campaign_finish(struct digloop_campaign *campaign);
 

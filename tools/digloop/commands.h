@@ -35,42 +35,40 @@ digloop_parse(int argc, char *argv[], struct digloop_options *options, struct di
 /// failure of the work.
 enum dig_status digloop_input(enum dig_status status);
 
+/// What a command goes by: its options, the table, and the machine of --machine.
+struct digloop_job {
+    const struct digloop_options *options;
+    struct dig_curve_set         *set;
+    const struct digloop_machine *machine; // tools/digloop/recording.h; NULL: no --machine
+};
+
 /// The index of --trajectory in the set. DIG_EINVAL names it when there is none.
-DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_options *options,
-                                                       const struct dig_curve_set   *set,
+DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_job *job,
                                                        int *trajectory, struct dig_error *error);
 
-struct digloop_machine; // tools/digloop/recording.h; NULL: no --machine
-
-DIG_MUST_CHECK enum dig_status digloop_identify(const struct digloop_options *options,
-                                                const struct dig_curve_set   *set,
-                                                const struct digloop_machine *machine,
-                                                struct dig_error             *error);
-DIG_MUST_CHECK enum dig_status digloop_predict(const struct digloop_options *options,
-                                               const struct dig_curve_set   *set,
-                                               const struct digloop_machine *machine,
-                                               struct dig_error             *error);
-DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_options *options,
-                                             const struct dig_curve_set   *set,
-                                             struct dig_error             *error);
-DIG_MUST_CHECK enum dig_status digloop_design(const struct digloop_options *options,
-                                              const struct dig_curve_set   *set,
-                                              struct dig_error             *error);
+DIG_MUST_CHECK enum dig_status digloop_identify(const struct digloop_job *job,
+                                                struct dig_error         *error);
+DIG_MUST_CHECK enum dig_status digloop_predict(const struct digloop_job *job,
+                                               struct dig_error         *error);
+DIG_MUST_CHECK enum dig_status digloop_trace(const struct digloop_job *job,
+                                             struct dig_error         *error);
+DIG_MUST_CHECK enum dig_status digloop_design(const struct digloop_job *job,
+                                              struct dig_error         *error);
 
 /// Needs no table: options->table is the machine's file. *wrong: the check finds something wrong.
 DIG_MUST_CHECK enum dig_status digloop_check(const struct digloop_options *options, bool *wrong,
                                              struct dig_error *error);
 
 /// Writes the model file asked for: the trace's gravel and effects, with the files they need.
-DIG_MUST_CHECK enum dig_status
-digloop_save_model(const struct digloop_options *options, const struct dig_curve_set *set,
-                   const char *effects, const struct dig_trace *trace, struct dig_error *error);
+DIG_MUST_CHECK enum dig_status digloop_save_model(const struct digloop_job *job,
+                                                  const char               *effects,
+                                                  const struct dig_trace   *trace,
+                                                  struct dig_error         *error);
 
 /// The table of effects asked for, or the one beside the table if there is one; path names it, ""
 /// when there is none: then it says so on standard error and leaves *effects. Free with
 /// dig_effect_set_destroy().
-DIG_MUST_CHECK enum dig_status digloop_load_effects(const struct digloop_options *options,
-                                                    const struct dig_curve_set   *set,
+DIG_MUST_CHECK enum dig_status digloop_load_effects(const struct digloop_job *job,
                                                     char                    path[DIGLOOP_PATH_SIZE],
                                                     struct dig_effect_set **effects,
                                                     struct dig_error       *error);

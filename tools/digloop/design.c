@@ -9,27 +9,26 @@
 #include <stdlib.h>
 
 // What the effects add, where a table of them is given or lies beside the table.
-static enum dig_status make_soil(const struct digloop_options *const      options,
-                                 const struct dig_curve_set *const        set,
+static enum dig_status make_soil(const struct digloop_job *const          job,
                                  const struct dig_response_surface *const surface,
                                  const struct dig_scatter *const          scatter,
                                  struct dig_soil **const soil, struct dig_error *const error)
 {
     char                   path[DIGLOOP_PATH_SIZE];
     struct dig_effect_set *effects = NULL;
-    enum dig_status        status  = digloop_load_effects(options, set, path, &effects, error);
+    enum dig_status        status  = digloop_load_effects(job, path, &effects, error);
     if (status == DIG_OK) {
         status = dig_soil_create(surface, effects, scatter, soil);
         if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+            (void)dig_error_set(error, status, "%s: %s", job->options->table,
+                                dig_status_str(status));
         }
     }
     dig_effect_set_destroy(effects);
     return status;
 }
 
-enum dig_status digloop_design(const struct digloop_options *const options,
-                               const struct dig_curve_set *const set, struct dig_error *const error)
+enum dig_status digloop_design(const struct digloop_job *const job, struct dig_error *const error)
 {
     const struct dig_design_settings   settings = dig_design_settings_default();
     struct dig_response_surface *const surface  = calloc(1, sizeof *surface);
@@ -38,16 +37,16 @@ enum dig_status digloop_design(const struct digloop_options *const options,
     struct dig_soil                   *soil     = NULL;
     enum dig_status status = surface != NULL && design != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
-        status = dig_response_surface_fit(set, surface);
+        status = dig_response_surface_fit(job->set, surface);
     }
     if (status != DIG_OK) {
         (void)dig_error_set(error, status, "%s: too few entries for a surface over the gravel",
-                            options->table);
+                            job->options->table);
         goto done;
     }
-    status = dig_scatter_measure(options->table, surface, &scatter, error);
+    status = dig_scatter_measure(job->options->table, surface, &scatter, error);
     if (status == DIG_OK) {
-        status = make_soil(options, set, surface, scatter, &soil, error);
+        status = make_soil(job, surface, scatter, &soil, error);
     }
     if (status != DIG_OK) {
         goto done;
@@ -55,11 +54,11 @@ enum dig_status digloop_design(const struct digloop_options *const options,
     status = dig_design_run(surface, scatter, soil, &settings, design);
     if (status != DIG_OK) {
         (void)dig_error_set(error, status, "%s: holds no simple trajectory, expected one or more",
-                            options->table);
-    } else if (options->json) {
-        dig_design_json(design, set, stdout);
+                            job->options->table);
+    } else if (job->options->json) {
+        dig_design_json(design, job->set, stdout);
     } else {
-        dig_design_text(design, set, stdout);
+        dig_design_text(design, job->set, stdout);
     }
 done:
     dig_scatter_destroy(scatter);

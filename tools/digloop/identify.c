@@ -33,15 +33,13 @@ static enum dig_status add(struct pool *const pool, const struct dig_observed_di
     return DIG_OK;
 }
 
-static enum dig_status collect(const struct digloop_options *const options,
-                               const struct dig_curve_set *const   set,
-                               const struct digloop_machine *const machine, const int trajectory,
+static enum dig_status collect(const struct digloop_job *const job, const int trajectory,
                                struct pool *const pool, struct dig_error *const error)
 {
     enum dig_status status = DIG_OK;
-    for (int i = 0; i < options->recordings && status == DIG_OK; i++) {
+    for (int i = 0; i < job->options->recordings && status == DIG_OK; i++) {
         struct dig_observed_digs digs = { .digs = 0 };
-        status = digloop_read_digs(options->recording[i], machine, set, trajectory, &digs, error);
+        status = digloop_read_digs(job, job->options->recording[i], trajectory, &digs, error);
         if (status == DIG_OK) {
             status = add(pool, &digs, error);
         }
@@ -79,38 +77,34 @@ static enum dig_status check_along(const struct dig_curve_set *const set,
                                "those along one");
 }
 
-static enum dig_status observe_all(const struct digloop_options *const options,
-                                   const struct dig_curve_set *const   set,
-                                   const struct digloop_machine *const machine,
-                                   struct pool *const pool, struct dig_error *const error)
+static enum dig_status observe_all(const struct digloop_job *const job, struct pool *const pool,
+                                   struct dig_error *const error)
 {
     int             trajectory = -1;
     enum dig_status status     = DIG_OK;
-    if (options->trajectory != NULL) {
-        status = digloop_find_trajectory(options, set, &trajectory, error);
+    if (job->options->trajectory != NULL) {
+        status = digloop_find_trajectory(job, &trajectory, error);
     }
     if (status == DIG_OK) {
-        status = collect(options, set, machine, trajectory, pool, error);
+        status = collect(job, trajectory, pool, error);
     }
     if (status == DIG_OK) {
-        status = check_along(set, pool, error);
+        status = check_along(job->set, pool, error);
     }
     for (size_t d = 0; status == DIG_OK && d < pool->digs; d++) {
-        pool->dig[d].forces = pool->dig[d].forces && !options->moment_alone;
+        pool->dig[d].forces = pool->dig[d].forces && !job->options->moment_alone;
     }
     return status;
 }
 
-static enum dig_status match_all(const struct digloop_options *const options,
-                                 const struct dig_curve_set *const   set,
+static enum dig_status match_all(const char *const table, const struct dig_curve_set *const set,
                                  const struct pool *const pool, struct dig_match *const match,
                                  struct dig_error *const error)
 {
     enum dig_status status =
         dig_match_nearest(set, NULL, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
     if (status == DIG_ENOMATCH) {
-        return dig_error_set(error, status, "%s: holds no gravel with a curve along %s%s",
-                             options->table,
+        return dig_error_set(error, status, "%s: holds no gravel with a curve along %s%s", table,
                              set->trajectory[pool->dig[pool->digs - 1].trajectory].name,
                              pool->digs > 1 ? " and all else that was dug" : "");
     }
@@ -118,9 +112,8 @@ static enum dig_status match_all(const struct digloop_options *const options,
         dig_match_find_weighted(set, NULL, pool->digs, pool->dig, match);
         status = dig_fit_refine(set, NULL, pool->digs, pool->dig, EVALUATIONS, match);
     }
-    return status == DIG_OK
-               ? DIG_OK
-               : dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+    return status == DIG_OK ? DIG_OK
+                            : dig_error_set(error, status, "%s: %s", table, dig_status_str(status));
 }
 
 // "3 digs (simpleA): moment and forces"; and why not the forces, where some have them.
@@ -236,29 +229,26 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
     return id;
 }
 
-enum dig_status digloop_identify(const struct digloop_options *const options,
-                                 const struct dig_curve_set *const   set,
-                                 const struct digloop_machine *const machine,
-                                 struct dig_error *const             error)
+enum dig_status digloop_identify(const struct digloop_job *const job, struct dig_error *const error)
 {
     struct pool           pool  = { .digs = 0 };
     struct digloop_as_dug table = { .set = NULL };
     struct dig_match      match;
-    enum dig_status       status = observe_all(options, set, machine, &pool, error);
+    enum dig_status       status = observe_all(job, &pool, error);
     if (status == DIG_OK) {
-        status = digloop_as_dug_make(set, pool.digs, pool.dig, &table, error);
+        status = digloop_as_dug_make(job->set, pool.digs, pool.dig, &table, error);
     }
     if (status == DIG_OK) {
-        status = match_all(options, table.set, &pool, &match, error);
+        status = match_all(job->options->table, table.set, &pool, &match, error);
         digloop_as_dug_restore(&table, pool.digs, pool.dig);
     }
     digloop_as_dug_finish(&table);
     if (status == DIG_OK) {
-        const struct dig_identity id = identity_of(set, &pool.dig[pool.digs - 1], &match);
-        if (options->json) {
+        const struct dig_identity id = identity_of(job->set, &pool.dig[pool.digs - 1], &match);
+        if (job->options->json) {
             dig_identity_write(stdout, &id);
         } else {
-            show_measured(set, &pool, match.forces, stdout);
+            show_measured(job->set, &pool, match.forces, stdout);
             show_approaches(&pool, stdout);
             show_identity(&id, stdout);
             show_family(&match, stdout);

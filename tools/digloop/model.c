@@ -24,8 +24,7 @@ static void count_digs(const size_t digs, struct dig_model_effect *const effect)
 }
 
 // What the trace named and did not apply is told, and no part of the model.
-enum dig_status digloop_save_model(const struct digloop_options *const options,
-                                   const struct dig_curve_set *const set, const char *const effects,
+enum dig_status digloop_save_model(const struct digloop_job *const job, const char *const effects,
                                    const struct dig_trace *const trace,
                                    struct dig_error *const       error)
 {
@@ -33,9 +32,9 @@ enum dig_status digloop_save_model(const struct digloop_options *const options,
     if (model == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    (void)snprintf(model->table, sizeof model->table, "%s", options->table);
+    (void)snprintf(model->table, sizeof model->table, "%s", job->options->table);
     (void)snprintf(model->effects_table, sizeof model->effects_table, "%s", effects);
-    memcpy(model->scene_hash, set->scene_hash, sizeof model->scene_hash);
+    memcpy(model->scene_hash, job->set->scene_hash, sizeof model->scene_hash);
     model->gravel       = trace->applied ? trace->gravel : trace->gravel_before;
     model->low          = trace->applied ? trace->low : trace->low_before;
     model->high         = trace->applied ? trace->high : trace->high_before;
@@ -45,7 +44,7 @@ enum dig_status digloop_save_model(const struct digloop_options *const options,
     model->effects      = trace->applied ? trace->effects : 0;
     model->not_applied  = trace->effects - model->effects;
     (void)snprintf(model->provenance, sizeof model->provenance, "digloop %s trace %.200s",
-                   DIG_VERSION, options->recording[0]);
+                   DIG_VERSION, job->options->recording[0]);
     for (size_t e = 0; e < trace->effects; e++) {
         struct dig_model_effect *const to =
             trace->applied ? &model->effect[e] : &model->left_out[e];
@@ -53,7 +52,7 @@ enum dig_status digloop_save_model(const struct digloop_options *const options,
         count_digs(trace->digs, to);
     }
     model->unlisted              = trace->applied ? trace->unlisted : NULL; // the trace keeps it
-    const enum dig_status status = dig_model_save(options->add, model, error);
+    const enum dig_status status = dig_model_save(job->options->add, model, error);
     free(model);
     return status;
 }

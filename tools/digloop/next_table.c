@@ -114,17 +114,16 @@ static void add_grid(const struct dig_curve_set *const set, const size_t digs,
     dig_text_add(size, text, "END\n");
 }
 
-enum dig_status digloop_next_table(const struct digloop_options *const options,
-                                   const struct dig_curve_set *const set, const char *const effects,
+enum dig_status digloop_next_table(const struct digloop_job *const job, const char *const effects,
                                    const size_t digs, const struct dig_measured measured[],
                                    struct dig_trace *const trace, struct dig_error *const error)
 {
-    assert(options != NULL && set != NULL && effects != NULL && trace != NULL);
+    assert(job != NULL && effects != NULL && trace != NULL);
     struct work *const w = calloc(1, sizeof *w);
     if (w == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    const enum dig_status status = dig_table_scene(options->table, &w->own, error);
+    const enum dig_status status = dig_table_scene(job->options->table, &w->own, error);
 
     size_t held = 0;
     for (size_t e = 0; status == DIG_OK && !trace->no_air && e < trace->effects; e++) {
@@ -133,11 +132,11 @@ enum dig_status digloop_next_table(const struct digloop_options *const options,
     }
     if (held > 0) {
         char         scene[DIGLOOP_PATH_SIZE];
-        char *const  text  = trace->command;
-        const size_t size  = sizeof trace->command;
-        const bool   known = find_scene(set, options->recording[0], w, sizeof scene, scene);
-        text[0]            = '\0';
-        add_grid(set, digs, measured, trace, w, size, text);
+        char *const  text = trace->command;
+        const size_t size = sizeof trace->command;
+        const bool known = find_scene(job->set, job->options->recording[0], w, sizeof scene, scene);
+        text[0]          = '\0';
+        add_grid(job->set, digs, measured, trace, w, size, text);
         if (!known) {
             dig_text_add(size, text,
                          "# SCENE.yaml: the scene \"%s\" that the table was computed in\n",

@@ -10,8 +10,7 @@
 /// that write a grid and run digtable on it, for beds of the gravel found with these effects in
 /// them, in the table of effects beside the table. Nothing without free air, or where a magnitude
 /// is none that a bed can hold. effects: of digloop_load_effects(). *error as files have it.
-DIG_MUST_CHECK enum dig_status digloop_next_table(const struct digloop_options *options,
-                                                  const struct dig_curve_set   *set,
+DIG_MUST_CHECK enum dig_status digloop_next_table(const struct digloop_job *job,
                                                   const char *effects, size_t digs,
                                                   const struct dig_measured measured[],
                                                   struct dig_trace *trace, struct dig_error *error);

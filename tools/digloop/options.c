@@ -1,15 +1,134 @@
 #include "tools/digloop/commands.h"
 
+#include "core/command_line.h"
 #include "core/did_you_mean.h"
 #include "core/help.h"
 #include "core/units.h"
 #include "files/text/whole.h"
-#include "tools/digloop/help.h"
 
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// A letter is an option's short name, too.
+enum {
+    OUTPUT     = 'o',
+    QUIET      = 'q',
+    IDENTIFIED = 256,
+    TRAJECTORY,
+    MACHINE,
+    MODEL,
+    MOMENT_ALONE,
+    MEASURED,
+    DEPTH,
+    ATTACK,
+    EFFECTS,
+    JSON,
+    HTML,
+    ADD,
+};
+
+static const struct dig_command commands[] = {
+    { "identify", "TABLE.sqlite RECORDING... [OPTION]...",
+      "Finds the gravel that resists like recorded digs.",
+      "All digs are matched together, by moment and forces where every dig has them, else by the "
+      "moment alone. They are to be along one trajectory, or along such as begin with "
+      "\"simple\".\n\n"
+      "A recording is a force recording, or with --machine a machine recording or an LCM log of "
+      "the daemon, which may hold several digs.",
+      "digloop identify tables/product.sqlite simple1.csv simple2.csv --json >id.json\n"
+      "digloop identify tables/product.sqlite run.csv \\\n"
+      "        --machine config/machines/zx200_trench.yaml\n"
+      "digloop identify tables/product.sqlite day.lcm --trajectory simpleA \\\n"
+      "        --machine config/machines/zx200_trench.yaml --json >id.json\n" },
+    { "predict", "TABLE --identified ID --trajectory NAME [OPTION]...",
+      "Predicts what an identified gravel resists other digs with.",
+      "At the table's scale, with --machine at that machine's, too: its forces are lambda^3, its "
+      "moments lambda^4 times the table's, lambda being how many times its bucket is as long. Dug "
+      "deeper or with the bucket turned where the table was. With digs measured, how wrong that "
+      "was, each as it was dug: relative Euclidean norm of the moment, "
+      "+-0.16 s.",
+      "digloop predict tables/product.sqlite --identified id.json \\\n"
+      "        --trajectory actual --machine config/machines/zx200_trench.yaml\n"
+      "digloop predict tables/product.sqlite --identified id.json \\\n"
+      "        --trajectory actual --measured actual_1.csv\n"
+      "digloop predict tables/product.sqlite --identified id.json \\\n"
+      "        --trajectory actual --measured day.lcm \\\n"
+      "        --machine config/machines/zx200_trench.yaml\n" },
+    { "trace", "TABLE.sqlite CAMPAIGN/ [OPTION]...", "Traces what the table lacks to an effect.",
+      "The residual of a campaign's digs, the effect it traces to, the error on the holdout digs "
+      "before and after that effect is added. Effects of the soil are compared with beds that hold "
+      "them.\n\n"
+      "A file \"-\" is standard output. What people are told goes there without --json and --add, "
+      "else to standard error.",
+      "digloop trace tables/product.sqlite campaign/\n"
+      "digloop trace tables/product.sqlite campaign/ --html trace.html \\\n"
+      "        --json trace.json --add model.json\n" },
+    { "check", "MACHINE.yaml RECORDING [OPTION]...",
+      "Says what a machine file makes of a recording in free air.",
+      "A checklist: sample times, stuck sensors, how far each joint moves, which way and from "
+      "where "
+      "angles count, which cylinder is which, head and rod, units, offsets, weights, delay, and "
+      "what "
+      "none of that explains. Each answer with its 1 sigma, what is allowed, and what to do.\n\n"
+      "RECORDING is a machine recording or an LCM log of the daemon, in which the bucket touches "
+      "nothing: move boom, arm and bucket one after the other through most of their range, slowly, "
+      "for about a minute. `digrig air` makes one of a simulated machine.\n\n"
+      "A file \"-\" is standard output. The exit status is 2 where something is wrong.",
+      "digloop check config/machines/zx120.yaml air.csv\n"
+      "digloop check my.yaml air.lcm --html check.html --json check.json\n" },
+    { "design", "TABLE.sqlite [OPTION]...",
+      "Tells which simple dig of the table tells most about the gravel.",
+      "And which tells effects apart, and whether digs simulated with the table's own scatter bear "
+      "that out.",
+      "digloop design tables/product.sqlite\n" },
+};
+
+static const struct dig_option known[] = {
+    { "identified", IDENTIFIED, "ID.json", " predict ",
+      "the gravel, as `digloop identify --json` wrote it" },
+    { "trajectory", TRAJECTORY, "NAME", " identify ", "take the digs along one only" },
+    { "trajectory", TRAJECTORY, "NAME", " predict ", "the dig to predict" },
+    { "machine", MACHINE, "MACHINE.yaml", " identify ", "the recordings are of this machine" },
+    { "machine", MACHINE, "MACHINE.yaml", " predict ",
+      "the measured digs are of this machine; peak and energy by it, too" },
+    { "model", MODEL, "MODEL.json", " identify predict ",
+      "table and machine with the effects that a trace has added" },
+    { "moment-alone", MOMENT_ALONE, NULL, " identify ", "leave the forces out" },
+    { "measured", MEASURED, "RECORDING", " predict ", "compare with digs measured" },
+    { "depth", DEPTH, "F", " predict ",
+      "factor on how far the tooth goes down in the first phase, 0.2 to 3 (default 1)" },
+    { "attack-deg", ATTACK, "A", " predict ",
+      "the bucket turned about its tooth, -45 to 45, positive curls (default 0)" },
+    { "output", OUTPUT, "CURVE.csv", " predict ", "also write the predicted curve" },
+    { "effects", EFFECTS, "EFFECTS.sqlite", " trace design ",
+      "beds that hold effects of the soil (default: TABLE_effects.sqlite beside the table)" },
+    { "json", JSON, NULL, " identify predict design ", "the result as JSON on standard output" },
+    { "json", JSON, "OUT.json", " trace check ", "write the result as JSON" },
+    { "html", HTML, "OUT.html", " trace check ", "write it as a page with plots" },
+    { "add", ADD, "MODEL.json", " trace ",
+      "write the model with the effect added, for digsightd and --model" },
+    { "quiet", QUIET, NULL, " trace check ", "nothing for people, only what goes wrong" },
+};
+
+static const struct dig_program program = {
+    .self        = { "digloop",
+                     "COMMAND TABLE.sqlite ARGUMENT... [OPTION]...\ncheck MACHINE.yaml RECORDING "
+                            "[OPTION]...\nCOMMAND --help",
+                     "Finds the gravel of a table that resists like recorded digs, predicts other "
+                            "digs, and traces what a model lacks.",
+                     NULL,
+                     "digloop identify tables/product.sqlite simpleA_1.csv --json >id.json\n"
+                            "digloop predict tables/product.sqlite --identified id.json --trajectory "
+                            "actual\n" },
+    .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input, or a check that "
+                   "finds something wrong\n",
+    .commands    = sizeof commands / sizeof commands[0],
+    .command     = commands,
+    .options     = sizeof known / sizeof known[0],
+    .option      = known,
+};
 
 // Results that would go to standard output, one into the other.
 static int results_on_stdout(const struct digloop_options *const o)
@@ -52,33 +171,33 @@ static enum dig_status take(const int option, struct digloop_options *const o,
                             struct dig_error *const error)
 {
     switch (option) {
-    case DIGLOOP_IDENTIFIED: o->identified = optarg; break;
-    case DIGLOOP_TRAJECTORY: o->trajectory = optarg; break;
-    case DIGLOOP_MACHINE: o->machine = optarg; break;
-    case DIGLOOP_MODEL: o->model = optarg; break;
-    case DIGLOOP_MOMENT_ALONE: o->moment_alone = true; break;
-    case DIGLOOP_OUTPUT: o->out = optarg; break;
-    case DIGLOOP_MEASURED: o->measured = optarg; break;
-    case DIGLOOP_DEPTH:
+    case IDENTIFIED: o->identified = optarg; break;
+    case TRAJECTORY: o->trajectory = optarg; break;
+    case MACHINE: o->machine = optarg; break;
+    case MODEL: o->model = optarg; break;
+    case MOMENT_ALONE: o->moment_alone = true; break;
+    case OUTPUT: o->out = optarg; break;
+    case MEASURED: o->measured = optarg; break;
+    case DEPTH:
         if (!dig_number_read(optarg, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST,
                              &o->approach.depth)) {
             return dig_error_set(error, DIG_EINVAL, "--depth %s: expected 0.2 to 3", optarg);
         }
         break;
-    case DIGLOOP_ATTACK:
+    case ATTACK:
         if (!dig_number_read(optarg, -45.0, 45.0, &o->approach.attack_rad)) {
             return dig_error_set(error, DIG_EINVAL, "--attack-deg %s: expected -45 to 45", optarg);
         }
         o->approach.attack_rad *= DIG_RAD_PER_DEG;
         break;
-    case DIGLOOP_EFFECTS: o->effects = optarg; break;
-    case DIGLOOP_JSON:
+    case EFFECTS: o->effects = optarg; break;
+    case JSON:
         o->json     = true;
         o->json_out = optarg;
         break;
-    case DIGLOOP_HTML: o->html = optarg; break;
-    case DIGLOOP_ADD: o->add = optarg; break;
-    case DIGLOOP_QUIET: o->quiet = true; break;
+    case HTML: o->html = optarg; break;
+    case ADD: o->add = optarg; break;
+    case QUIET: o->quiet = true; break;
     default: return DIG_EINVAL; // said already
     }
     return DIG_OK;
@@ -87,15 +206,14 @@ static enum dig_status take(const int option, struct digloop_options *const o,
 enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_options *const options,
                               struct dig_error *const error)
 {
-    const struct dig_command *const command = dig_command_find(digloop_program(), argv[1], error);
+    const struct dig_command *const command = dig_command_find(&program, argv[1], error);
     if (command == NULL) {
         return DIG_EINVAL;
     }
     struct digloop_options o = { .command = command->name, .approach = dig_approach_plain() };
-    for (int c;
-         (c = dig_option_next(digloop_program(), command, argc, argv, error)) != DIG_OPTION_END;) {
+    for (int c; (c = dig_option_next(&program, command, argc, argv, error)) != DIG_OPTION_END;) {
         if (c == DIG_OPTION_HELP) {
-            dig_help_print(digloop_program(), command, stdout);
+            dig_help_print(&program, command, stdout);
             exit(EXIT_SUCCESS);
         }
         if (c == DIG_OPTION_VERSION) {
@@ -125,19 +243,19 @@ enum dig_status digloop_input(const enum dig_status status)
     return status == DIG_EIO ? DIG_EINVAL : status;
 }
 
-enum dig_status digloop_find_trajectory(const struct digloop_options *const options,
-                                        const struct dig_curve_set *const   set,
-                                        int *const trajectory, struct dig_error *const error)
+enum dig_status digloop_find_trajectory(const struct digloop_job *const job, int *const trajectory,
+                                        struct dig_error *const error)
 {
-    const int found = dig_curve_set_find(set, options->trajectory);
+    const int found = dig_curve_set_find(job->set, job->options->trajectory);
     if (found < 0) {
         char             text[DIG_GUESS_SIZE];
-        struct dig_guess guess = dig_guess(options->trajectory);
-        for (size_t t = 0; t < set->trajectories; t++) {
-            dig_guess_try(&guess, set->trajectory[t].name);
+        struct dig_guess guess = dig_guess(job->options->trajectory);
+        for (size_t t = 0; t < job->set->trajectories; t++) {
+            dig_guess_try(&guess, job->set->trajectory[t].name);
         }
         return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory%s",
-                             options->trajectory, options->table, dig_guess_text(&guess, "", text));
+                             job->options->trajectory, job->options->table,
+                             dig_guess_text(&guess, "", text));
     }
     *trajectory = found;
     return DIG_OK;

@@ -110,7 +110,7 @@ static struct on_machine on_machine(const struct prediction *const p, const doub
 // For people: the result where none goes to a program.
 static void print_text(const struct digloop_options *const options,
                        const struct prediction *const p, const char *const how,
-                       const struct digloop_machine *const machine, const double lambda)
+                       const struct digloop_machine *const machine)
 {
     FILE *const to = options->out != NULL ? stderr : stdout;
     (void)fprintf(to,
@@ -119,7 +119,7 @@ static void print_text(const struct digloop_options *const options,
                   p->trajectory.name, how, p->whole.peak_Nm, p->whole.peak_sigma_Nm,
                   p->whole.energy_J, p->whole.energy_sigma_J);
     if (machine != NULL) {
-        const struct on_machine m = on_machine(p, lambda);
+        const struct on_machine m = on_machine(p, machine->lambda);
         (void)fprintf(to,
                       "  by %s, %.2f times the table's bucket: peak %.4g ± %.2g kN·m, energy %.4g "
                       "± %.2g kJ, in %.1f s\n",
@@ -147,14 +147,14 @@ static void put_on_machine(const struct on_machine *const m, const char *const n
 }
 
 static void print(const struct digloop_options *const options, const struct prediction *const p,
-                  const struct digloop_machine *const machine, const double lambda)
+                  const struct digloop_machine *const machine)
 {
     const struct dig_peak_energy *const whole = &p->whole;
     const struct dig_curve *const       curve = &p->curve;
     char                                how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
-        print_text(options, p, how, machine, lambda);
+        print_text(options, p, how, machine);
         return;
     }
     (void)fputs("{\"trajectory\": ", stdout);
@@ -170,7 +170,7 @@ static void print(const struct digloop_options *const options, const struct pred
         digloop_prediction_error_put(&p->errors);
     }
     if (machine != NULL) {
-        const struct on_machine m = on_machine(p, lambda);
+        const struct on_machine m = on_machine(p, machine->lambda);
         put_on_machine(&m, machine->machine.name);
     }
     put_array(stdout, "moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
@@ -183,15 +183,14 @@ static void print(const struct digloop_options *const options, const struct pred
 }
 
 // The trajectory asked for, dug as asked for.
-static enum dig_status predict(const struct digloop_options *const options,
-                               const struct dig_curve_set *const set, const int t,
+static enum dig_status predict(const struct digloop_job *const job, const int t,
                                const struct dig_match *const match, struct prediction *const p,
                                struct dig_error *const error)
 {
     struct digloop_as_dug table = { .set = NULL };
     size_t                at    = 0;
     enum dig_status       status =
-        digloop_as_dug_at(set, (size_t)t, &options->approach, &table, &at, error);
+        digloop_as_dug_at(job->set, (size_t)t, &job->options->approach, &table, &at, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -201,54 +200,50 @@ static enum dig_status predict(const struct digloop_options *const options,
         status = dig_peak_energy_predict(table.set, match, at, &p->whole);
     }
     digloop_as_dug_finish(&table);
-    return status == DIG_OK
-               ? DIG_OK
-               : dig_error_set(error, status, "%s: %s", options->table, dig_status_str(status));
+    return status == DIG_OK ? DIG_OK
+                            : dig_error_set(error, status, "%s: %s", job->options->table,
+                                            dig_status_str(status));
 }
 
-static enum dig_status read_identity(const struct digloop_options *const options,
-                                     const struct dig_curve_set *const   set,
+static enum dig_status read_identity(const struct digloop_job *const job,
                                      struct dig_identity *const id, struct dig_error *const error)
 {
-    const enum dig_status status = digloop_input(dig_identity_read(options->identified, id, error));
-    if (status == DIG_OK && strcmp(id->scene_hash, set->scene_hash) != 0) {
+    const enum dig_status status =
+        digloop_input(dig_identity_read(job->options->identified, id, error));
+    if (status == DIG_OK && strcmp(id->scene_hash, job->set->scene_hash) != 0) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s was identified with scene %.12s…, %s holds scene %.12s…, expected "
                              "one scene",
-                             options->identified, id->scene_hash, options->table, set->scene_hash);
+                             job->options->identified, id->scene_hash, job->options->table,
+                             job->set->scene_hash);
     }
     return status;
 }
 
-enum dig_status digloop_predict(const struct digloop_options *const options,
-                                const struct dig_curve_set *const   set,
-                                const struct digloop_machine *const machine,
-                                struct dig_error *const             error)
+enum dig_status digloop_predict(const struct digloop_job *const job, struct dig_error *const error)
 {
+    const struct digloop_options *const options = job->options;
     assert(options->identified != NULL && options->trajectory != NULL);
     struct dig_identity id;
     int                 t      = 0;
-    enum dig_status     status = read_identity(options, set, &id, error);
+    enum dig_status     status = read_identity(job, &id, error);
     if (status == DIG_OK) {
-        status = digloop_find_trajectory(options, set, &t, error);
+        status = digloop_find_trajectory(job, &t, error);
     }
     if (status != DIG_OK) {
         return status;
     }
     const struct dig_match match = match_of(&id);
     struct prediction      p     = { .errors = { .digs = 0 } };
-    status                       = predict(options, set, t, &match, &p, error);
+    status                       = predict(job, t, &match, &p, error);
     if (status == DIG_OK && options->out != NULL) {
-        status = write_curve(options->out, set, &p.trajectory, &p.curve, error);
+        status = write_curve(options->out, job->set, &p.trajectory, &p.curve, error);
     }
     if (status == DIG_OK && options->measured != NULL) {
-        status =
-            digloop_prediction_error_measure(options, set, machine, t, &match, &p.errors, error);
+        status = digloop_prediction_error_measure(job, t, &match, &p.errors, error);
     }
     if (status == DIG_OK) {
-        const double lambda =
-            machine != NULL ? machine->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m : 1.0;
-        print(options, &p, machine, lambda);
+        print(options, &p, job->machine);
     }
     return status;
 }

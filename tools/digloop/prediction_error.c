@@ -67,17 +67,15 @@ static enum dig_status score_dig(const struct dig_curve_set *const      set,
     return status;
 }
 
-enum dig_status digloop_prediction_error_measure(const struct digloop_options *const options,
-                                                 const struct dig_curve_set *const   set,
-                                                 const struct digloop_machine *const machine,
-                                                 const int t, const struct dig_match *const match,
+enum dig_status digloop_prediction_error_measure(const struct digloop_job *const job, const int t,
+                                                 const struct dig_match *const          match,
                                                  struct digloop_prediction_error *const errors,
                                                  struct dig_error *const                error)
 {
     struct dig_observed_digs seen = { .digs = 0 };
-    enum dig_status status = digloop_read_digs(options->measured, machine, set, t, &seen, error);
+    enum dig_status status        = digloop_read_digs(job, job->options->measured, t, &seen, error);
     for (size_t i = 0; status == DIG_OK && i < seen.digs; i++) {
-        status = score_dig(set, match, &seen.dig[i], errors, error);
+        status = score_dig(job->set, match, &seen.dig[i], errors, error);
     }
     dig_observed_digs_finish(&seen);
     return status;

@@ -20,12 +20,12 @@ struct digloop_prediction_error {
     double peak_Nm[DIGLOOP_PREDICTION_ERROR_DIGS], energy_J[DIGLOOP_PREDICTION_ERROR_DIGS];
 };
 
-/// Of all digs of options->measured along trajectory t, each predicted as it was made. Fails as
+/// Of all digs of --measured along trajectory t, each predicted as it was made. Fails as
 /// reading and predicting do; then *errors is of the digs before.
-DIG_MUST_CHECK enum dig_status digloop_prediction_error_measure(
-    const struct digloop_options *options, const struct dig_curve_set *set,
-    const struct digloop_machine *machine, int t, const struct dig_match *match,
-    struct digloop_prediction_error *errors, struct dig_error *error);
+DIG_MUST_CHECK enum dig_status
+digloop_prediction_error_measure(const struct digloop_job *job, int t,
+                                 const struct dig_match          *match,
+                                 struct digloop_prediction_error *errors, struct dig_error *error);
 
 /// As members of a JSON object, behind others.
 void digloop_prediction_error_put(const struct digloop_prediction_error *errors);

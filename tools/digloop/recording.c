@@ -85,25 +85,25 @@ enum dig_status digloop_read_machine(const char *const                   path,
     return DIG_OK;
 }
 
-enum dig_status digloop_load_machine(const struct digloop_options *const options,
-                                     struct dig_curve_set *const         set,
-                                     struct digloop_machine *const       machine,
-                                     struct dig_error *const             error)
+enum dig_status digloop_load_machine(const struct digloop_job *const job,
+                                     struct digloop_machine *const   machine,
+                                     struct dig_error *const         error)
 {
-    assert(options != NULL && set != NULL && machine != NULL);
-    struct digloop_machine loaded = { .corrects = false };
-    const bool             any    = options->machine != NULL;
-    enum dig_status        status = DIG_OK;
+    assert(job != NULL && machine != NULL);
+    const struct digloop_options *const options = job->options;
+    struct digloop_machine              loaded  = { .corrects = false };
+    const bool                          any     = options->machine != NULL;
+    enum dig_status                     status  = DIG_OK;
     if (any) {
         status = dig_machine_read(options->machine, &loaded.machine, error);
     }
     if (status == DIG_OK && any) {
-        status =
-            digloop_check_bucket(options->machine, &loaded.machine, options->table, set, error);
+        loaded.lambda = loaded.machine.link[DIG_JOINT_BUCKET].length_m / job->set->tooth_m;
+        status        = digloop_check_bucket(job, options->machine, &loaded.machine, error);
     }
     if (status == DIG_OK && options->model != NULL) {
-        status = dig_load_model(options->model, options->table, any ? &loaded.machine : NULL, set,
-                                &loaded.correction, &loaded.corrects, error);
+        status = dig_load_model(options->model, options->table, any ? &loaded.machine : NULL,
+                                job->set, &loaded.correction, &loaded.corrects, error);
     }
     if (status == DIG_OK) {
         *machine = loaded;
@@ -162,12 +162,11 @@ static enum dig_status read_force(const char *const path, const struct dig_curve
     return DIG_OK;
 }
 
-static enum dig_status read_samples(const char *const                   path,
-                                    const struct digloop_machine *const machine,
-                                    const struct dig_curve_set *const   set,
-                                    struct dig_observed_digs *const     digs,
-                                    struct dig_error *const             error)
+static enum dig_status read_samples(const struct digloop_job *const job, const char *const path,
+                                    struct dig_observed_digs *const digs,
+                                    struct dig_error *const         error)
 {
+    const struct digloop_machine *const machine = job->machine;
     if (machine == NULL) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s: no force recording, expected --machine MACHINE.yaml for a "
@@ -180,31 +179,28 @@ static enum dig_status read_samples(const char *const                   path,
         struct dig_error why = { "" };
         status =
             dig_observe_machine(&machine->machine, machine->corrects ? &machine->correction : NULL,
-                                set, &recording, digs, &why);
+                                job->set, &recording, digs, &why);
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", path, why.text);
         }
     }
     dig_machine_recording_finish(&recording);
-    const double lambda = machine->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t i = 0; status == DIG_OK && i < digs->digs; i++) {
-        dig_inertia_error_add(&machine->machine, lambda, &digs->dig[i]);
+        dig_inertia_error_add(&machine->machine, machine->lambda, &digs->dig[i]);
     }
     return status;
 }
 
-enum dig_status digloop_read_digs(const char *const                   path,
-                                  const struct digloop_machine *const machine,
-                                  const struct dig_curve_set *const set, const int trajectory,
-                                  struct dig_observed_digs *const digs,
-                                  struct dig_error *const         error)
+enum dig_status digloop_read_digs(const struct digloop_job *const job, const char *const path,
+                                  const int trajectory, struct dig_observed_digs *const digs,
+                                  struct dig_error *const error)
 {
-    assert(path != NULL && set != NULL && digs != NULL);
-    assert(trajectory < (int)set->trajectories);
+    assert(job != NULL && path != NULL && digs != NULL);
+    assert(trajectory < (int)job->set->trajectories);
     struct dig_observed_digs read   = { .digs = 0 };
     enum dig_status          status = digloop_is_force_recording(path)
-                                          ? read_force(path, set, &read, error)
-                                          : read_samples(path, machine, set, &read, error);
+                                          ? read_force(path, job->set, &read, error)
+                                          : read_samples(job, path, &read, error);
     if (status != DIG_OK || read.dig == NULL) {
         return digloop_input(status);
     }
@@ -216,8 +212,8 @@ enum dig_status digloop_read_digs(const char *const                   path,
     }
     if (kept == 0) {
         status = dig_error_set(error, DIG_ENOMATCH, "%s: a dig along %s, expected one along %s",
-                               path, set->trajectory[read.dig[0].trajectory].name,
-                               set->trajectory[trajectory].name);
+                               path, job->set->trajectory[read.dig[0].trajectory].name,
+                               job->set->trajectory[trajectory].name);
         dig_observed_digs_finish(&read);
         return status;
     }

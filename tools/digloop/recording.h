@@ -20,6 +20,7 @@ bool digloop_is_force_recording(const char *path);
 /// The machine of --machine, and what the model of --model says of it.
 struct digloop_machine {
     struct dig_machine    machine;
+    double                lambda; // its bucket's length over that of the table's
     bool                  corrects;
     struct dig_correction correction;
 };
@@ -38,21 +39,18 @@ DIG_MUST_CHECK enum dig_status digloop_read_machine(const char                  
                                                     struct dig_error             *error);
 
 /// Reads --machine, where given, into *machine and takes --model, where given, into it and into the
-/// curves of the set. Refuses a bucket whose shape is not that of the table's scene, and what
+/// curves of the job's set. Refuses a bucket whose shape is not that of the table's scene, and what
 /// dig_load_model() does.
-DIG_MUST_CHECK enum dig_status digloop_load_machine(const struct digloop_options *options,
-                                                    struct dig_curve_set         *set,
-                                                    struct digloop_machine       *machine,
-                                                    struct dig_error             *error);
+DIG_MUST_CHECK enum dig_status digloop_load_machine(const struct digloop_job *job,
+                                                    struct digloop_machine   *machine,
+                                                    struct dig_error         *error);
 
 /// The digs of a file: one of a force recording, all that followed a trajectory of a machine's.
 /// trajectory: only those along it, or -1. DIG_ENOMATCH names the file when there is none;
 /// DIG_EINVAL for a machine's recording without a machine (NULL). Free with
 /// dig_observed_digs_finish().
-DIG_MUST_CHECK enum dig_status digloop_read_digs(const char                   *path,
-                                                 const struct digloop_machine *machine,
-                                                 const struct dig_curve_set *set, int trajectory,
-                                                 struct dig_observed_digs *digs,
-                                                 struct dig_error         *error);
+DIG_MUST_CHECK enum dig_status digloop_read_digs(const struct digloop_job *job, const char *path,
+                                                 int trajectory, struct dig_observed_digs *digs,
+                                                 struct dig_error *error);
 
 #endif // DIG_TOOLS_DIGLOOP_RECORDING_H

@@ -28,26 +28,26 @@ static enum dig_status check_file(const char *const path, const char *const tabl
     return status;
 }
 
-enum dig_status digloop_check_scene(const char *const path, const char *const table,
-                                    const struct dig_curve_set *const set, double *const scale,
-                                    struct dig_error *const error)
+enum dig_status digloop_check_scene(const struct digloop_job *const job, const char *const path,
+                                    double *const scale, struct dig_error *const error)
 {
-    assert(path != NULL && table != NULL && set != NULL && scale != NULL);
+    assert(job != NULL && path != NULL && scale != NULL);
 
     // A scene may be named instead of given: then by the name the table has.
     if (access(path, F_OK) != 0) {
-        const bool same = strcmp(dig_path_last(path), set->scene_name) == 0;
+        const bool same = strcmp(dig_path_last(path), job->set->scene_name) == 0;
         *scale          = same ? 1.0 : *scale;
         return same ? DIG_OK
                     : dig_error_set(error, DIG_EINVAL,
                                     "%s: no such scene file, nor is it the scene \"%s\" of %s",
-                                    path, set->scene_name, table);
+                                    path, job->set->scene_name, job->options->table);
     }
     struct dig_scene *const scene = calloc(2, sizeof *scene); // the file's, the table's
     if (scene == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    const enum dig_status status = check_file(path, table, &scene[0], &scene[1], error);
+    const enum dig_status status =
+        check_file(path, job->options->table, &scene[0], &scene[1], error);
     if (status == DIG_OK) {
         *scale = dig_scene_scale(&scene[0], &scene[1]);
     }
@@ -55,18 +55,18 @@ enum dig_status digloop_check_scene(const char *const path, const char *const ta
     return status;
 }
 
-enum dig_status digloop_check_bucket(const char *const               file,
+enum dig_status digloop_check_bucket(const struct digloop_job *const job, const char *const file,
                                      const struct dig_machine *const machine,
-                                     const char *const table, const struct dig_curve_set *const set,
-                                     struct dig_error *const error)
+                                     struct dig_error *const         error)
 {
-    assert(file != NULL && machine != NULL && table != NULL && set != NULL);
+    assert(job != NULL && file != NULL && machine != NULL);
     const double shape = machine->bucket_width_m / machine->link[DIG_JOINT_BUCKET].length_m;
-    const double scene = set->bucket_width_m / set->tooth_m;
+    const double scene = job->set->bucket_width_m / job->set->tooth_m;
     return fabs(shape / scene - 1.0) <= DIG_SIMILAR
                ? DIG_OK
                : dig_error_set(error, DIG_EINVAL,
                                "%s: a bucket %.3f times as wide as long, that of scene \"%s\" in "
                                "%s is %.3f times; expected the same shape within %.0f %%",
-                               file, shape, set->scene_name, table, scene, 100.0 * DIG_SIMILAR);
+                               file, shape, job->set->scene_name, job->options->table, scene,
+                               100.0 * DIG_SIMILAR);
 }

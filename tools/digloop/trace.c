@@ -39,33 +39,33 @@ static void say_without_beds(const char *const path)
     (void)fputs("), and anything else is \"unlisted\"\n", stderr);
 }
 
-enum dig_status digloop_load_effects(const struct digloop_options *const options,
-                                     const struct dig_curve_set *const   set,
-                                     char                          path[const DIGLOOP_PATH_SIZE],
-                                     struct dig_effect_set **const effects,
-                                     struct dig_error *const       error)
+enum dig_status digloop_load_effects(const struct digloop_job *const job,
+                                     char                            path[const DIGLOOP_PATH_SIZE],
+                                     struct dig_effect_set **const   effects,
+                                     struct dig_error *const         error)
 {
     struct stat found;
-    if (options->effects != NULL) {
-        (void)snprintf(path, DIGLOOP_PATH_SIZE, "%s", options->effects);
+    if (job->options->effects != NULL) {
+        (void)snprintf(path, DIGLOOP_PATH_SIZE, "%s", job->options->effects);
     } else {
-        name_effects(options->table, path);
+        name_effects(job->options->table, path);
         if (stat(path, &found) != 0) {
             say_without_beds(path);
             path[0] = '\0';
             return DIG_OK;
         }
     }
-    return digloop_input(dig_effects_load(path, set, effects, error));
+    return digloop_input(dig_effects_load(path, job->set, effects, error));
 }
 
-static enum dig_status
-write_results(const struct digloop_options *const options, const struct dig_curve_set *const set,
-              const char *const effects, const struct digloop_campaign *const campaign,
-              const struct dig_trace *const trace, struct dig_error *const error)
+static enum dig_status write_results(const struct digloop_job *const job, const char *const effects,
+                                     const struct digloop_campaign *const campaign,
+                                     const struct dig_trace *const        trace,
+                                     struct dig_error *const              error)
 {
-    struct dig_out  out;
-    enum dig_status status = DIG_OK;
+    const struct digloop_options *const options = job->options;
+    struct dig_out                      out;
+    enum dig_status                     status = DIG_OK;
     if (options->json_out != NULL) {
         status = dig_out_open(&out, options->json_out, error);
         if (status == DIG_OK) {
@@ -78,7 +78,7 @@ write_results(const struct digloop_options *const options, const struct dig_curv
             .campaign = options->recording[0],
             .table    = options->table,
             .lambda   = campaign->lambda,
-            .set      = set,
+            .set      = job->set,
             .digs     = campaign->digs,
             .measured = campaign->measured,
         };
@@ -88,7 +88,7 @@ write_results(const struct digloop_options *const options, const struct dig_curv
         }
     }
     if (status == DIG_OK && options->add != NULL) {
-        status = digloop_save_model(options, set, effects, trace, error);
+        status = digloop_save_model(job, effects, trace, error);
     }
     // Where programs are to read the result, people read on standard error.
     const bool for_program =
@@ -99,8 +99,7 @@ write_results(const struct digloop_options *const options, const struct dig_curv
     return status;
 }
 
-enum dig_status digloop_trace(const struct digloop_options *const options,
-                              const struct dig_curve_set *const set, struct dig_error *const error)
+enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_error *const error)
 {
     char                    path[DIGLOOP_PATH_SIZE];
     struct dig_effect_set  *effects  = NULL;
@@ -108,29 +107,28 @@ enum dig_status digloop_trace(const struct digloop_options *const options,
     struct dig_trace       *trace    = calloc(1, sizeof *trace);
     enum dig_status         status   = trace != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
-        status = digloop_load_effects(options, set, path, &effects, error);
+        status = digloop_load_effects(job, path, &effects, error);
     }
     if (status == DIG_OK) {
-        status =
-            digloop_campaign_load(options->recording[0], options->table, set, &campaign, error);
+        status = digloop_campaign_load(job, &campaign, error);
     }
     if (status == DIG_OK) {
         const struct dig_trace_settings settings = dig_trace_settings_default();
         struct dig_error                why      = { "" };
-        status = dig_trace_run(set, options->table, effects, &settings, campaign.machine,
+        status = dig_trace_run(job->set, job->options->table, effects, &settings, campaign.machine,
                                campaign.digs, campaign.measured, trace, &why);
         if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", options->recording[0], why.text);
+            (void)dig_error_set(error, status, "%s: %s", job->options->recording[0], why.text);
         }
     }
     if (status == DIG_OK) {
         char beside[DIGLOOP_PATH_SIZE];
-        name_effects(options->table, beside);
-        status = digloop_next_table(options, set, path[0] != '\0' ? path : beside, campaign.digs,
+        name_effects(job->options->table, beside);
+        status = digloop_next_table(job, path[0] != '\0' ? path : beside, campaign.digs,
                                     campaign.measured, trace, error);
     }
     if (status == DIG_OK) {
-        status = write_results(options, set, path, &campaign, trace, error);
+        status = write_results(job, path, &campaign, trace, error);
     }
     if (trace != NULL) {
         dig_trace_finish(trace);
