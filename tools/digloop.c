@@ -62,13 +62,6 @@ static void note_few_frictions(const char *const table, const struct dig_curve_s
     }
 }
 
-// The one command that goes by no table.
-static enum dig_status check(const struct digloop_options *const options, bool *const wrong,
-                             struct dig_error *const error)
-{
-    return digloop_input(digloop_check(options, wrong, error));
-}
-
 int main(const int argc, char *argv[])
 {
     struct digloop_options options = { .command = "" };
@@ -77,11 +70,12 @@ int main(const int argc, char *argv[])
         (void)fprintf(stderr, "digloop: %s\nTry digloop --help.\n", error.text);
         return 2;
     }
+    // The one command that goes by no table.
+    const bool            checks = strcmp(options.command, "check") == 0;
     struct dig_curve_set *set    = NULL;
     bool                  wrong  = false;
-    const bool            checks = strcmp(options.command, "check") == 0;
-    enum dig_status       status = checks ? check(&options, &wrong, &error)
-                                          : digloop_input(dig_table_load(options.table, &set, &error));
+    enum dig_status       status = digloop_input(checks ? digloop_check(&options, &wrong, &error)
+                                                        : dig_table_load(options.table, &set, &error));
     if (status == DIG_OK && !checks) {
         note_step(options.table, set);
         if (strcmp(options.command, "trace") == 0) {

@@ -74,7 +74,7 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
         }
     }
     for (int a = 0; a < DIG_AXES; a++) {
-        const int digits = a == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
+        const int digits = dig_report_axis_digits(a);
         (void)fprintf(to,
                       "<tr><th>gravel: %s</th><td><b>%.*f</b></td><td>%.*f to %.*f</td>"
                       "<td>%.*f</td></tr>\n",

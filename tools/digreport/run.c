@@ -16,9 +16,8 @@
 
 // What the daemon published, as far as the report needs it.
 struct published {
+    struct dig_report_run     *run; // takes the gravel
     bool                       matched, forces;
-    struct dig_gravel          gravel, low, high, nearest;
-    double                     distance;
     uint32_t                   matched_dig;
     bool                       predicted; // for a dig after the match
     struct dig_predicted_curve curve;
@@ -44,14 +43,14 @@ static void take_match(void *const context, const int64_t time_us, const digsigh
     if (!m->valid || m->going_on || published->predicted || !finite) {
         return;
     }
-    published->matched     = true;
-    published->forces      = m->forces != 0;
-    published->matched_dig = (uint32_t)m->dig_count;
-    published->gravel      = gravel[0];
-    published->low         = gravel[1];
-    published->high        = gravel[2];
-    published->nearest     = gravel[3];
-    published->distance    = m->distance;
+    published->matched       = true;
+    published->forces        = m->forces != 0;
+    published->matched_dig   = (uint32_t)m->dig_count;
+    published->run->gravel   = gravel[0];
+    published->run->low      = gravel[1];
+    published->run->high     = gravel[2];
+    published->run->nearest  = gravel[3];
+    published->run->distance = m->distance;
 }
 
 // The first prediction of the dig: the one that was made before most of it was dug.
@@ -174,7 +173,7 @@ enum dig_status digreport_run(const struct digreport_options *const options,
                               struct dig_report_run *const run, struct dig_error *const error)
 {
     char *const                 log       = strchr(named_log, '=') + 1;
-    struct published            published = { .matched = false };
+    struct published            published = { .run = run };
     const struct dig_lcm_reader reader    = { .context    = &published,
                                               .match      = take_match,
                                               .prediction = take_prediction };
@@ -198,11 +197,6 @@ enum dig_status digreport_run(const struct digreport_options *const options,
     (void)snprintf(run->name, sizeof run->name, "%.*s", (int)(log - 1 - named_log), named_log);
     run->truth_known = options->truth_known;
     run->truth       = options->truth;
-    run->gravel      = published.gravel;
-    run->low         = published.low;
-    run->high        = published.high;
-    run->nearest     = published.nearest;
-    run->distance    = published.distance;
     fill_dig(&run->simple, set, &simple);
     fill_dig(&run->real, set, &real);
     (void)snprintf(run->dig, sizeof run->dig,
@@ -210,8 +204,7 @@ enum dig_status digreport_run(const struct digreport_options *const options,
                    published.forces ? "moment and forces" : "moment alone", run->real.trajectory);
 
     struct dig_curve curve;
-    if (dig_match_interpolate(set, &published.gravel, (size_t)simple.trajectory, &curve) !=
-        DIG_OK) {
+    if (dig_match_interpolate(set, &run->gravel, (size_t)simple.trajectory, &curve) != DIG_OK) {
         return dig_error_set(error, DIG_ENOMATCH,
                              "%s: the identified gravel lies outside %s, expected the table the "
                              "daemon ran on",

@@ -47,8 +47,7 @@ static enum dig_status find(const char *const table, struct dig_job_folder *cons
                             struct dig_error *const error)
 {
     char              here[PATH_MAX] = "";
-    const char *const slash          = strrchr(table, '/');
-    const char *const name           = slash != NULL ? slash + 1 : table;
+    const char *const name           = dig_path_last(table);
     if (!dig_path_ok(table) || strcmp(name, "") == 0 || strcmp(name, ".") == 0 ||
         strcmp(name, "..") == 0) {
         return dig_error_set(error, DIG_EINVAL, "%s: expected " DIG_PATH_RULE, table);

@@ -47,18 +47,21 @@ static struct dig_rig_pose placed(const struct dig_rig_path *const path, const s
                                   pose.phi_rad };
 }
 
-// Accelerations of the links at frame i: second differences of where they are. Still at both ends.
+// Whether inertia counts at frame i: the machine stands still at both ends.
+static bool moves(const struct dig_rig_track_options *const options,
+                  const struct dig_rig_path *const path, const size_t i)
+{
+    return !options->quasi_static && i >= reach && i + reach < path->frames;
+}
+
+// Accelerations of the links at frame i: second differences of where they are.
 static enum dig_status move_links(const struct dig_machine *const  machine,
                                   const struct dig_rig_path *const path, const size_t i,
                                   const struct dig_rig_placement *const placement,
                                   struct dig_rig_motion *const          motion)
 {
     struct dig_rig_motion result = { .turn_radps2 = { 0.0 } };
-    if (i < reach || i + reach >= path->frames) {
-        *motion = result;
-        return DIG_OK;
-    }
-    const size_t          at[3] = { i - reach, i, i + reach };
+    const size_t          at[3]  = { i - reach, i, i + reach };
     struct dig_rig_joints joints[3];
     for (int k = 0; k < 3; k++) {
         const struct dig_rig_pose pose   = placed(path, at[k], placement);
@@ -82,13 +85,10 @@ static enum dig_status move_links(const struct dig_machine *const  machine,
     return DIG_OK;
 }
 
-// The bucket's own motion at frame i of a machine with a force sensor. Still at both ends.
+// The bucket's own motion at frame i of a machine with a force sensor.
 static struct dig_rig_motion move_bucket(const struct dig_machine *const  machine,
                                          const struct dig_rig_path *const path, const size_t i)
 {
-    if (i < reach || i + reach >= path->frames) {
-        return (struct dig_rig_motion){ .turn_radps2 = { 0.0 } };
-    }
     const struct dig_rig_pose pose[3] = { path->frame[i - reach].pose, path->frame[i].pose,
                                           path->frame[i + reach].pose };
     return dig_rig_gauge_motion(machine, pose, (double)reach * DIG_RIG_STEP_s);
@@ -103,7 +103,7 @@ static enum dig_status fill_sensed(const struct dig_machine *const           mac
     for (size_t r = 0; r < track->rows; r++) {
         const size_t          i      = r * every;
         struct dig_rig_motion motion = { .turn_radps2 = { 0.0 } };
-        if (!options->quasi_static) {
+        if (moves(options, path, i)) {
             motion = move_bucket(machine, path, i);
         }
         const struct dig_rig_pose pose = placed(path, i, &track->placement);
@@ -149,7 +149,7 @@ static enum dig_status fill_driven(const struct dig_machine *const           mac
         struct dig_rig_motion     motion = { .turn_radps2 = { 0.0 } };
         struct dig_rig_state      state;
         enum dig_status           status = DIG_OK;
-        if (!options->quasi_static) {
+        if (moves(options, path, i)) {
             status = move_links(machine, path, i, &track->placement, &motion);
         }
         if (status == DIG_OK) {
