@@ -68,10 +68,9 @@ static const struct dig_command commands[] = {
     { "check", "MACHINE.yaml RECORDING [OPTION]...",
       "Says what a machine file makes of a recording in free air.",
       "A checklist: sample times, stuck sensors, how far each joint moves, which way and from "
-      "where "
-      "angles count, which cylinder is which, head and rod, units, offsets, weights, delay, and "
-      "what "
-      "none of that explains. Each answer with its 1 sigma, what is allowed, and what to do.\n\n"
+      "where angles count, which cylinder is which, head and rod, units, offsets, weights, delay, "
+      "and what none of that explains. Each answer with its 1 sigma, what is allowed, and what to "
+      "do.\n\n"
       "RECORDING is a machine recording or an LCM log of the daemon, in which the bucket touches "
       "nothing: move boom, arm and bucket one after the other through most of their range, slowly, "
       "for about a minute. `digrig air` makes one of a simulated machine.\n\n"

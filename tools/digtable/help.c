@@ -16,8 +16,7 @@ static const struct dig_command commands[] = {
     { "submit", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
       "Computes a table in shards: here, or with --slurm as a job array.",
       "Plans once, in the folder TABLE.sqlite.jobs, and merges the shards when all are done. The "
-      "same "
-      "command again submits what failed, and only that.",
+      "same command again submits what failed, and only that.",
       "digtable submit scene.yaml grid.yaml -o my.sqlite --slurm --tasks 500 \\\n"
       "         --time 4:00:00\n"
       "digtable submit scene.yaml grid.yaml -o my.sqlite\n" },
@@ -32,8 +31,7 @@ static const struct dig_command commands[] = {
       "TABLE.sqlite GRAVEL [OPTION]...",
       "Shows one curve of a table.",
       "ENTRY is a number of `digtable list`, GRAVEL is --friction F --rolling R --density KGPM3. "
-      "The "
-      "curve is drawn in the terminal, unless --csv or --json asks for its numbers.",
+      "The curve is drawn in the terminal, unless --csv or --json asks for its numbers.",
       "digtable show tables/product.sqlite --friction .5 --rolling .5 \\\n"
       "         --density 2500 --trajectory actual\n"
       "digtable show tables/product.sqlite 0 --channel Fx\n" },

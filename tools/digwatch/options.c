@@ -15,8 +15,7 @@ static const struct dig_option known[] = {
     { "log", LOG, "LOG.lcm", NULL, "play a log of lcm-logger instead" },
     { "speed", SPEED, "X", NULL,
       "X times as fast as it was logged, 0.01 to 10000 (default 1); a pause of more than 10 s "
-      "takes "
-      "10 s" },
+      "takes 10 s" },
     { "ascii", ASCII, NULL, NULL,
       "no braille and no shades, for terminals without UTF-8 (found by itself)" },
     { "prometheus", PROMETHEUS, "FILE.prom", NULL,
