@@ -18,21 +18,12 @@ static struct dig_gravel gravel_at(const struct dig_grid *const grid, size_t ind
     return gravel;
 }
 
-static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
-{
-    size_t equal = 0;
-    for (int i = 0; i < DIG_AXES; i++) {
-        equal += !(a->value[i] < b->value[i]) && !(a->value[i] > b->value[i]) ? 1 : 0;
-    }
-    return equal == DIG_AXES;
-}
-
 // A single point among n points: in place of the same, or behind them. Returns how many there are.
 static size_t put(const struct dig_grid_point *const one, const size_t n,
                   struct dig_plan_point point[const])
 {
     size_t at = 0;
-    while (at < n && !(is_same(&point[at].gravel, &one->gravel) &&
+    while (at < n && !(dig_gravel_is_same(&point[at].gravel, &one->gravel) &&
                        dig_approach_is_same(&point[at].approach, &one->approach))) {
         at++;
     }
