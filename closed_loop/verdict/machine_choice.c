@@ -113,10 +113,16 @@ static void keep_best(const struct dig_machine_answer *const answer, const size_
     }
 }
 
+// Leaves in measured[].machine what these effects add.
+static enum dig_status apply(const struct dig_trace_work *const w, const size_t effects,
+                             const struct dig_model_effect effect[])
+{
+    return dig_machine_side_apply(w->machine, effects, effect, DIG_APPLY_TO_ALL, w->measured);
+}
+
 // One answer: with free air's own values, or with what the digs make of what it leaves open.
-static enum dig_status weigh(struct dig_machine_side *const machine, const size_t from,
-                             const size_t digs, struct dig_measured measured[],
-                             const struct dig_trace_work *const w, struct choice *const choice)
+static enum dig_status weigh(const struct dig_trace_work *const w, const size_t from,
+                             struct choice *const choice)
 {
     static const double       none[DIG_STEPS_MAX] = { 0.0 };
     struct dig_machine_answer answer              = w->air->answer[from];
@@ -125,13 +131,10 @@ static enum dig_status weigh(struct dig_machine_side *const machine, const size_
     if (scratch == NULL) {
         return DIG_ENOMEM;
     }
-    const enum dig_status status =
-        answer.wide
-            ? dig_machine_steps_make(machine, &answer, digs, measured, w->batch, &scratch->steps)
-            : dig_machine_side_apply(machine, answer.effects, answer.effect, DIG_APPLY_TO_ALL,
-                                     measured);
+    const enum dig_status status = answer.wide ? dig_machine_steps_make(w, &answer, &scratch->steps)
+                                               : apply(w, answer.effects, answer.effect);
     if (status == DIG_OK) {
-        take_off_batch(w->batch, measured, &scratch->batch);
+        take_off_batch(w->batch, w->measured, &scratch->batch);
         scratch->batch.steps = answer.wide ? &scratch->steps : NULL;
         const double evidence =
             answer.log_evidence + soil_evidence(&scratch->batch, w->soil, &soil) - choice->soil0;
@@ -246,13 +249,10 @@ static void write_none(const bool significant, struct dig_machine_finding *const
     air->unexplained = significant;
 }
 
-static enum dig_status choose(struct dig_machine_side *const         machine,
-                              const struct dig_trace_settings *const settings, const size_t digs,
-                              struct dig_measured measured[], struct dig_trace_work *const w,
-                              struct choice *const choice)
+static enum dig_status choose(struct dig_trace_work *const w, struct choice *const choice)
 {
     struct dig_machine_finding *const air     = w->air;
-    const double                      level   = settings->false_alarm / 2.0;
+    const double                      level   = w->settings->false_alarm / 2.0;
     const double                      least   = log((double)air->candidates / level);
     double                            unnamed = -INFINITY;
     enum dig_status                   status  = DIG_OK;
@@ -270,7 +270,7 @@ static enum dig_status choose(struct dig_machine_side *const         machine,
         // best.
         const double most = air->answer[i].log_evidence + left;
         if (most >= fmax(least, choice->evidence - tie)) {
-            status = weigh(machine, i, digs, measured, w, choice);
+            status = weigh(w, i, choice);
         }
     }
     if (choice->evidence >= fmax(least, unnamed)) {
@@ -284,21 +284,19 @@ static enum dig_status choose(struct dig_machine_side *const         machine,
 
 // An effect of the machine that a gravel of the table could stand in for is named, but the digs do
 // not confirm it, and no more than even odds are claimed.
-static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, const size_t digs,
-                                     const struct dig_measured      measured[],
-                                     struct dig_trace_work *const   w,
+static enum dig_status weigh_in_soil(struct dig_trace_work *const   w,
                                      const struct dig_fitted *const plain)
 {
-    struct dig_measured *const alone = malloc(digs * sizeof *alone);
+    struct dig_measured *const alone = malloc(w->digs * sizeof *alone);
     if (alone == NULL) {
         return DIG_ENOMEM;
     }
     enum dig_status status = DIG_OK;
-    memcpy(alone, measured, digs * sizeof *alone);
+    memcpy(alone, w->measured, w->digs * sizeof *alone);
     for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
         struct dig_model_effect *const effect = &w->air->effect[e];
 
-        status = dig_machine_side_apply(machine, 1, effect, DIG_APPLY_TO_FITTED, alone);
+        status = dig_machine_side_apply(w->machine, 1, effect, DIG_APPLY_TO_FITTED, alone);
         if (status == DIG_OK) {
             w->size[e] = dig_effect_size_of_machine(w->batch, plain, alone);
             effect->probability *= fmax(dig_effect_size_chance(w->size[e]), DIG_TRACE_UNCONFIRMED);
@@ -308,36 +306,31 @@ static enum dig_status weigh_in_soil(struct dig_machine_side *const machine, con
     return status;
 }
 
-enum dig_status dig_trace_machine(struct dig_machine_side *const         machine,
-                                  const struct dig_trace_settings *const settings,
-                                  const size_t digs, struct dig_measured measured[],
-                                  struct dig_trace_work *const w, struct dig_fitted *const plain,
+enum dig_status dig_trace_machine(struct dig_trace_work *const w, struct dig_fitted *const plain,
                                   struct dig_error *const error)
 {
-    assert(machine != NULL && settings != NULL && measured != NULL && w != NULL && plain != NULL);
+    assert(w != NULL && w->machine != NULL && plain != NULL);
     struct choice *const choice = calloc(1, sizeof *choice);
     enum dig_status      status =
-        choice != NULL
-                 ? dig_machine_side_trace(machine, settings->false_alarm / 2.0, settings->seed, w->air)
-                 : DIG_ENOMEM;
+        choice != NULL ? dig_machine_side_trace(w->machine, w->settings->false_alarm / 2.0,
+                                                     w->settings->seed, w->air)
+                            : DIG_ENOMEM;
     if (status == DIG_OK && w->air->answers > 0) {
-        status = choose(machine, settings, digs, measured, w, choice);
+        status = choose(w, choice);
     }
     struct dig_trace_open *const open = w->open;
     if (status == DIG_OK && open->answer.numbers > 0) {
-        status =
-            dig_machine_steps_make(machine, &open->answer, digs, measured, w->batch, &open->steps);
+        status = dig_machine_steps_make(w, &open->answer, &open->steps);
     } else if (status == DIG_OK) {
-        status = dig_machine_side_apply(machine, w->air->effects, w->air->effect, DIG_APPLY_TO_ALL,
-                                        measured);
+        status = apply(w, w->air->effects, w->air->effect);
     }
     if (is_no_answer(status)) { // a holdout is not told with what the digs made of it
         write_none(true, w->air);
         open->answer.numbers = 0;
-        status               = dig_machine_side_apply(machine, 0, NULL, DIG_APPLY_TO_ALL, measured);
+        status               = apply(w, 0, NULL);
     }
     if (status == DIG_OK) {
-        status = dig_trace_batch(w, digs, measured, plain, error);
+        status = dig_trace_batch(w, plain, error);
     }
     if (status == DIG_OK && open->answer.numbers > 0) {
         for (size_t k = 0; k < open->steps.steps; k++) {
@@ -346,25 +339,21 @@ enum dig_status dig_trace_machine(struct dig_machine_side *const         machine
         w->batch->steps = &open->steps;
     }
     free(choice);
-    return status == DIG_OK ? weigh_in_soil(machine, digs, measured, w, plain) : status;
+    return status == DIG_OK ? weigh_in_soil(w, plain) : status;
 }
 
-enum dig_status dig_trace_settle_machine(const struct dig_machine_side *const machine,
-                                         const double covariance[], struct dig_measured measured[],
-                                         struct dig_trace_work *const w)
+enum dig_status dig_trace_settle_machine(struct dig_trace_work *const w, const double covariance[])
 {
-    assert(measured != NULL && w != NULL);
+    assert(w != NULL);
     struct dig_machine_answer answer = w->open->answer;
     if (w->batch->steps == NULL) {
         return DIG_OK;
     }
     dig_machine_steps_values(w->search->chosen.z, covariance, &answer);
-    const enum dig_status status =
-        dig_machine_side_apply(machine, answer.effects, answer.effect, DIG_APPLY_TO_ALL, measured);
+    const enum dig_status status = apply(w, answer.effects, answer.effect);
     if (is_no_answer(status)) { // a holdout is told with the values that were chosen alone
         memset(w->search->chosen.z, 0, sizeof w->search->chosen.z);
-        return dig_machine_side_apply(machine, w->air->effects, w->air->effect, DIG_APPLY_TO_ALL,
-                                      measured);
+        return apply(w, w->air->effects, w->air->effect);
     }
     for (size_t e = 0; e < answer.effects; e++) {
         memcpy(w->air->effect[e].parameter, answer.effect[e].parameter,

@@ -49,36 +49,33 @@ static void means_added(const struct dig_whitened_digs *const batch,
 }
 
 // What the machine adds to the means at z.
-static enum dig_status added_at(struct dig_machine_side *const         machine,
+static enum dig_status added_at(const struct dig_trace_work *const     w,
                                 const struct dig_machine_answer *const answer, const double z[],
                                 const enum dig_apply apply, struct dig_measured measured[],
-                                const struct dig_whitened_digs *const batch,
-                                double                                added[][DIG_FEATURES])
+                                double added[][DIG_FEATURES])
 {
     struct dig_machine_answer there = *answer;
     dig_machine_steps_values(z, NULL, &there);
     const enum dig_status status =
-        dig_machine_side_apply(machine, there.effects, there.effect, apply, measured);
+        dig_machine_side_apply(w->machine, there.effects, there.effect, apply, measured);
     if (status == DIG_OK) {
-        means_added(batch, measured, added);
+        means_added(w->batch, measured, added);
     }
     return status == DIG_EINVAL ? DIG_ENOMATCH : status;
 }
 
 // A step at which a dig is not told is a way that stays shut.
-static enum dig_status find_steps(struct dig_machine_side *const         machine,
+static enum dig_status find_steps(const struct dig_trace_work *const     w,
                                   const struct dig_machine_answer *const answer,
-                                  const struct dig_whitened_digs *const  batch,
                                   struct dig_measured other[], struct dig_steps *const steps)
 {
     static const double none[DIG_MACHINE_NUMBERS] = { 0.0 };
     double              middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
-    enum dig_status     status =
-        added_at(machine, answer, none, DIG_APPLY_ROUGHLY, other, batch, middle);
+    enum dig_status     status = added_at(w, answer, none, DIG_APPLY_ROUGHLY, other, middle);
     for (size_t k = 0; k < answer->numbers && status == DIG_OK; k++) {
         double z[DIG_MACHINE_NUMBERS] = { 0.0 };
         z[k]                          = 1.0;
-        status = added_at(machine, answer, z, DIG_APPLY_ROUGHLY, other, batch, steps->of[k]);
+        status = added_at(w, answer, z, DIG_APPLY_ROUGHLY, other, steps->of[k]);
         for (size_t t = 0; t < DIG_TRAJECTORY_MAX && status == DIG_OK; t++) {
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 steps->of[k][t][f] -= middle[t][f];
@@ -89,31 +86,28 @@ static enum dig_status find_steps(struct dig_machine_side *const         machine
     return status;
 }
 
-enum dig_status dig_machine_steps_make(struct dig_machine_side *const         machine,
+enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
                                        const struct dig_machine_answer *const answer,
-                                       const size_t digs, struct dig_measured measured[],
-                                       const struct dig_whitened_digs *const batch,
-                                       struct dig_steps *const               steps)
+                                       struct dig_steps *const                steps)
 {
-    assert(machine != NULL && answer != NULL && measured != NULL && batch != NULL && steps != NULL);
+    assert(w != NULL && answer != NULL && steps != NULL);
     static const double none[DIG_MACHINE_NUMBERS] = { 0.0 };
     double              middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
     memset(steps, 0, sizeof *steps);
     if (answer->numbers == 0) {
         return DIG_ENOMATCH;
     }
-    steps->steps = answer->numbers;
-    enum dig_status status =
-        added_at(machine, answer, none, DIG_APPLY_TO_ALL, measured, batch, middle);
+    steps->steps           = answer->numbers;
+    enum dig_status status = added_at(w, answer, none, DIG_APPLY_TO_ALL, w->measured, middle);
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_measured *const other = malloc(digs * sizeof *other);
+    struct dig_measured *const other = malloc(w->digs * sizeof *other);
     if (other == NULL) {
         return DIG_ENOMEM;
     }
-    memcpy(other, measured, digs * sizeof *other);
-    status = find_steps(machine, answer, batch, other, steps);
+    memcpy(other, w->measured, w->digs * sizeof *other);
+    status = find_steps(w, answer, other, steps);
     free(other);
     return status;
 }

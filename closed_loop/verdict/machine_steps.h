@@ -10,17 +10,14 @@
 #ifndef DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
 #define DIG_CLOSED_LOOP_VERDICT_MACHINE_STEPS_H
 
-#include "closed_loop/fit/steps.h"
-#include "closed_loop/machine/machine_side.h"
+#include "closed_loop/verdict/trace_work.h"
 
-/// Leaves in measured[].machine what the answer's values add to every dig, and in *steps what its
-/// steps from there add to the mean dig of each of the batch's trajectories. DIG_ENOMATCH: a dig is
-/// not told with the effects. DIG_ENOMEM. Some milliseconds a parameter.
-DIG_MUST_CHECK enum dig_status dig_machine_steps_make(struct dig_machine_side         *machine,
+/// Leaves in w->measured[].machine what the answer's values add to every dig, and in *steps what
+/// its steps from there add to the mean dig of each of the batch's trajectories. DIG_ENOMATCH: a
+/// dig is not told with the effects. DIG_ENOMEM. Some milliseconds a parameter.
+DIG_MUST_CHECK enum dig_status dig_machine_steps_make(const struct dig_trace_work     *w,
                                                       const struct dig_machine_answer *answer,
-                                                      size_t digs, struct dig_measured measured[],
-                                                      const struct dig_whitened_digs *batch,
-                                                      struct dig_steps               *steps);
+                                                      struct dig_steps                *steps);
 
 /// Writes values and 90 % intervals of the answer's parameters: at z, whose covariance is
 /// [numbers * numbers] (NULL: the values alone).

@@ -14,19 +14,19 @@ const char *dig_residual_channel_name(const enum dig_channel channel)
     return name[channel];
 }
 
-static void fill_dig(const struct dig_tracing *const t, const struct dig_machine_finding *const air,
+static void fill_dig(const struct dig_trace_work *const   w,
                      const struct dig_trace_curves *const curves, const size_t i,
                      struct dig_residuals_dig *const to)
 {
-    const struct dig_measured *const dig = &t->measured[i];
+    const struct dig_measured *const dig = &w->measured[i];
     (void)snprintf(to->name, sizeof to->name, "%s", dig->name);
     (void)snprintf(to->trajectory, sizeof to->trajectory, "%s",
-                   t->set->trajectory[dig->trajectory].name);
+                   w->set->trajectory[dig->trajectory].name);
     to->use        = dig->use;
     to->pass       = dig->pass;
-    to->air_sigmas = air != NULL ? air->residual_air_of[i] : (double)NAN;
-    dig_residual_of(t->set, dig, curves, false, to->before);
-    dig_residual_of(t->set, dig, curves, true, to->after);
+    to->air_sigmas = w->machine != NULL ? w->air->residual_air_of[i] : (double)NAN;
+    dig_residual_of(w->set, dig, curves, false, to->before);
+    dig_residual_of(w->set, dig, curves, true, to->after);
 }
 
 // States and relative residuals of the digs fitted to, where they were measured.
@@ -57,19 +57,19 @@ static double size_of(const struct dig_trace_curves *const curves,
     return n > 0.0 ? sqrt(sum / n) : 0.0;
 }
 
-static void collect(const struct dig_tracing *const t, const struct dig_trace_curves curves[],
+static void collect(const struct dig_trace_work *const w, const struct dig_trace_curves curves[],
                     const size_t channel, struct points *const p)
 {
     p->digs = 0;
-    for (size_t i = 0; i < t->digs; i++) {
-        const struct dig_measured *const dig  = &t->measured[i];
+    for (size_t i = 0; i < w->digs; i++) {
+        const struct dig_measured *const dig  = &w->measured[i];
         const double                     size = size_of(&curves[i], dig, channel);
         if (dig->use == DIG_USE_HOLDOUT || !dig->measured[channel] || !(size > 0.0)) {
             continue;
         }
         double state[DIG_REGRESSORS][DIG_CURVE_POINTS];
         size_t n = 0;
-        dig_regressors_along(t->set, dig, state);
+        dig_regressors_along(w->set, dig, state);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double progress = (double)k / (DIG_CURVE_POINTS - 1);
             if (progress >= dig->first && progress <= dig->last) {
@@ -83,51 +83,50 @@ static void collect(const struct dig_tracing *const t, const struct dig_trace_cu
     }
 }
 
-static enum dig_status fill_trends(const struct dig_tracing *const t,
-                                   const struct dig_trace_curves   curves[],
-                                   struct dig_residuals *const     residuals)
+static enum dig_status fill_trends(const struct dig_trace_work *const w,
+                                   const struct dig_trace_curves      curves[],
+                                   struct dig_residuals *const        residuals)
 {
     struct points *const p = malloc(sizeof *p);
     if (p == NULL) {
         return DIG_ENOMEM;
     }
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        collect(t, curves, c, p);
+        collect(w, curves, c, p);
         residuals->known[c] = p->digs > 0;
         for (size_t s = 0; s < DIG_REGRESSORS; s++) {
             struct dig_trend_dig dig[DIG_MEASURED_MAX];
             for (size_t i = 0; i < p->digs; i++) {
                 dig[i] = (struct dig_trend_dig){ p->n[i], p->state[i][s], p->y[i] };
             }
-            dig_trend_fit(p->digs, dig, t->settings->seed, &residuals->trend[c][s]);
+            dig_trend_fit(p->digs, dig, w->settings->seed, &residuals->trend[c][s]);
         }
     }
     free(p);
     return DIG_OK;
 }
 
-enum dig_status dig_residuals_make(const struct dig_tracing *const         t,
-                                   const struct dig_machine_finding *const air,
-                                   const struct dig_trace_curves           curves[],
-                                   struct dig_residuals *const             residuals)
+enum dig_status dig_residuals_make(const struct dig_trace_work *const w,
+                                   const struct dig_trace_curves      curves[],
+                                   struct dig_residuals *const        residuals)
 {
-    assert(t != NULL && curves != NULL && residuals != NULL);
+    assert(w != NULL && curves != NULL && residuals != NULL);
     struct dig_residuals *const made = calloc(1, sizeof *made);
     if (made == NULL) {
         return DIG_ENOMEM;
     }
-    made->digs = t->digs;
-    for (size_t i = 0; i < t->digs; i++) {
-        fill_dig(t, air, &curves[i], i, &made->dig[i]);
+    made->digs = w->digs;
+    for (size_t i = 0; i < w->digs; i++) {
+        fill_dig(w, &curves[i], i, &made->dig[i]);
     }
-    enum dig_status status = fill_trends(t, curves, made);
+    enum dig_status status = fill_trends(w, curves, made);
     if (status == DIG_OK) {
-        status = dig_portmanteau_judge(t->batch, t->soil, &t->search->plain, WHITE_DRAWS,
-                                       t->settings->seed, &made->without);
+        status = dig_portmanteau_judge(w->batch, w->soil, &w->search->plain, WHITE_DRAWS,
+                                       w->settings->seed, &made->without);
     }
     if (status == DIG_OK) {
-        status = dig_portmanteau_judge(t->batch, t->soil, &t->search->chosen, WHITE_DRAWS,
-                                       t->settings->seed, &made->with);
+        status = dig_portmanteau_judge(w->batch, w->soil, &w->search->chosen, WHITE_DRAWS,
+                                       w->settings->seed, &made->with);
     }
     if (status == DIG_OK) {
         *residuals = *made;

@@ -5,11 +5,10 @@
 #define DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
 
 #include "closed_loop/accuracy/trend.h"
-#include "closed_loop/machine/machine_side.h"
 #include "closed_loop/recordings/regressors.h"
 #include "closed_loop/search/portmanteau.h"
 #include "closed_loop/verdict/residual.h"
-#include "closed_loop/verdict/trace_parts.h"
+#include "closed_loop/verdict/trace_work.h"
 
 struct dig_residuals_dig {
     char         name[64];
@@ -37,11 +36,10 @@ struct dig_residuals {
 /// "moment_Nm", "fx_N", "fz_N".
 const char *dig_residual_channel_name(enum dig_channel channel);
 
-/// From what a trace has worked out; curves as in the trace. air: NULL where no machine measured.
-/// Some tens of milliseconds. DIG_ENOMEM. Writes on success only.
-DIG_MUST_CHECK enum dig_status dig_residuals_make(const struct dig_tracing         *t,
-                                                  const struct dig_machine_finding *air,
-                                                  const struct dig_trace_curves     curves[],
-                                                  struct dig_residuals             *residuals);
+/// From what a trace has worked out; curves as in the trace. Some tens of milliseconds. DIG_ENOMEM.
+/// Writes on success only.
+DIG_MUST_CHECK enum dig_status dig_residuals_make(const struct dig_trace_work  *w,
+                                                  const struct dig_trace_curves curves[],
+                                                  struct dig_residuals         *residuals);
 
 #endif // DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H

@@ -38,17 +38,17 @@ static void offer(struct dig_tell_apart *const tell, const bool in_air, const do
 }
 
 // What the next dig will be measured by: what those before were.
-static bool is_measured(const struct dig_tracing *const t, const size_t channel)
+static bool is_measured(const struct dig_trace_work *const w, const size_t channel)
 {
     bool any = false;
-    for (size_t i = 0; i < t->digs; i++) {
-        any = any || t->measured[i].measured[channel];
+    for (size_t i = 0; i < w->digs; i++) {
+        any = any || w->measured[i].measured[channel];
     }
     return any;
 }
 
 // Root mean square over the features that are measured, each over its scatter in one dig.
-static double in_scatters(const struct dig_tracing *const t, const size_t trajectory,
+static double in_scatters(const struct dig_trace_work *const w, const size_t trajectory,
                           const double difference[DIG_FEATURES],
                           const double size[DIG_FORCE_CHANNELS])
 {
@@ -57,8 +57,8 @@ static double in_scatters(const struct dig_tracing *const t, const size_t trajec
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         const size_t channel = f / DIG_FEATURE_BINS;
         const double off     = difference[f] / size[channel];
-        if (is_measured(t, channel)) {
-            sum += off * off / t->scatter->covariance[trajectory][f][f];
+        if (is_measured(w, channel)) {
+            sum += off * off / w->scatter->covariance[trajectory][f][f];
             count += 1.0;
         }
     }
@@ -66,20 +66,20 @@ static double in_scatters(const struct dig_tracing *const t, const size_t trajec
 }
 
 // How far apart two fitted hypotheses are in one dig.
-static double apart(const struct dig_tracing *const t, const struct dig_fitted *const a,
+static double apart(const struct dig_trace_work *const w, const struct dig_fitted *const a,
                     const struct dig_fitted *const b, const struct dig_measured *const dig)
 {
     double x[DIG_FEATURES];
     double y[DIG_FEATURES];
     double size[DIG_FORCE_CHANNELS];
     double noise;
-    dig_hypothesis_features(t->soil, &a->hypothesis, a->number, dig, x, &noise);
-    dig_hypothesis_features(t->soil, &b->hypothesis, b->number, dig, y, &noise);
+    dig_hypothesis_features(w->soil, &a->hypothesis, a->number, dig, x, &noise);
+    dig_hypothesis_features(w->soil, &b->hypothesis, b->number, dig, y, &noise);
     dig_features_amplitude(x, NULL, size);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         y[f] = x[f] - y[f];
     }
-    return in_scatters(t, (size_t)dig->trajectory, y, size);
+    return in_scatters(w, (size_t)dig->trajectory, y, size);
 }
 
 static const struct dig_fitted *rival_of(const struct dig_search *const s,
@@ -94,7 +94,7 @@ static const struct dig_fitted *rival_of(const struct dig_search *const s,
 }
 
 // The plain dig comes first: what another way of digging does not change is told by it.
-static void tell_soil(const struct dig_tracing *const t, struct dig_tell_apart *const tell)
+static void tell_soil(const struct dig_trace_work *const w, struct dig_tell_apart *const tell)
 {
     static const struct {
         const char *how;
@@ -106,18 +106,18 @@ static void tell_soil(const struct dig_tracing *const t, struct dig_tell_apart *
                 { " where it was dug before", 2, 1.0, 0 },
                 { " after ten more digs", 1, 1.0, MORE_DIGS } };
 
-    const struct dig_fitted *const a = rival_of(t->search, tell->effect[0]);
-    const struct dig_fitted *const b = rival_of(t->search, tell->effect[1]);
-    for (size_t w = 0; a != NULL && b != NULL && w < sizeof way / sizeof way[0]; w++) {
-        for (size_t k = 0; k < t->set->trajectories; k++) {
+    const struct dig_fitted *const a = rival_of(w->search, tell->effect[0]);
+    const struct dig_fitted *const b = rival_of(w->search, tell->effect[1]);
+    for (size_t i = 0; a != NULL && b != NULL && i < sizeof way / sizeof way[0]; i++) {
+        for (size_t k = 0; k < w->set->trajectories; k++) {
             const struct dig_measured dig = { .trajectory = (int)k,
-                                              .order      = t->digs + way[w].more,
-                                              .pass       = way[w].pass,
-                                              .pace       = way[w].pace };
-            if (t->surface->known[k] && dig_soil_knows(t->soil, tell->effect[0], k) &&
-                dig_soil_knows(t->soil, tell->effect[1], k)) {
-                offer(tell, false, apart(t, a, b, &dig), "a dig along ", t->set->trajectory[k].name,
-                      way[w].how);
+                                              .order      = w->digs + way[i].more,
+                                              .pass       = way[i].pass,
+                                              .pace       = way[i].pace };
+            if (w->surface->known[k] && dig_soil_knows(w->soil, tell->effect[0], k) &&
+                dig_soil_knows(w->soil, tell->effect[1], k)) {
+                offer(tell, false, apart(w, a, b, &dig), "a dig along ", w->set->trajectory[k].name,
+                      way[i].how);
             }
         }
     }
@@ -131,12 +131,10 @@ struct of_machine {
     double                  feature[DIG_MEASURED_MAX][DIG_FEATURES];
 };
 
-static enum dig_status work_out(const struct dig_tracing *const         t,
-                                const struct dig_machine_side *const    side,
-                                const struct dig_machine_finding *const air,
-                                const enum dig_effect_id id, struct dig_measured scratch[],
-                                struct of_machine *const made)
+static enum dig_status work_out(const struct dig_trace_work *const w, const enum dig_effect_id id,
+                                struct dig_measured scratch[], struct of_machine *const made)
 {
+    const struct dig_machine_finding *const air = w->air;
     memset(made, 0, sizeof *made);
     for (size_t i = 0; i < air->candidates; i++) {
         if (air->candidate[i].effect == id) {
@@ -153,10 +151,10 @@ static enum dig_status work_out(const struct dig_tracing *const         t,
         return DIG_OK;
     }
     dig_effect_of(id)->correct(value, &made->correction);
-    memcpy(scratch, t->measured, t->digs * sizeof *scratch);
+    memcpy(scratch, w->measured, w->digs * sizeof *scratch);
     const enum dig_status status =
-        dig_machine_side_apply(side, 1, &made->effect, DIG_APPLY_TO_ALL, scratch);
-    for (size_t i = 0; i < t->digs && status == DIG_OK; i++) {
+        dig_machine_side_apply(w->machine, 1, &made->effect, DIG_APPLY_TO_ALL, scratch);
+    for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         dig_features_of((const double(*)[DIG_CURVE_POINTS])scratch[i].machine, made->feature[i]);
     }
     // One that leaves a dig untold is compared in free air alone.
@@ -196,34 +194,33 @@ static enum dig_status offer_clean_bucket(const struct dig_machine_side *const s
                         : DIG_OK;
 }
 
-static enum dig_status tell_machine(const struct dig_tracing *const      t,
-                                    const struct dig_machine_side *const side,
-                                    const struct of_machine *const       a,
-                                    const struct of_machine *const       b,
-                                    struct dig_tell_apart *const         tell)
+static enum dig_status tell_machine(const struct dig_trace_work *const w,
+                                    const struct of_machine *const     a,
+                                    const struct of_machine *const     b,
+                                    struct dig_tell_apart *const       tell)
 {
     if (!a->known || !b->known) {
         return DIG_OK;
     }
-    enum dig_status status = offer_motion(side, &a->correction, &b->correction, "", tell);
+    enum dig_status status = offer_motion(w->machine, &a->correction, &b->correction, "", tell);
     if (status == DIG_OK) {
-        status = offer_clean_bucket(side, a, b, tell);
+        status = offer_clean_bucket(w->machine, a, b, tell);
     }
-    for (size_t i = 0; i < t->digs && status == DIG_OK; i++) {
-        const size_t k = (size_t)t->measured[i].trajectory;
+    for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
+        const size_t k = (size_t)w->measured[i].trajectory;
         double       plain[DIG_FEATURES];
         double       size[DIG_FORCE_CHANNELS];
         double       difference[DIG_FEATURES];
-        if (t->measured[i].use == DIG_USE_HOLDOUT) {
+        if (w->measured[i].use == DIG_USE_HOLDOUT) {
             continue;
         }
-        dig_features_of((const double(*)[DIG_CURVE_POINTS])t->measured[i].value, plain);
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])w->measured[i].value, plain);
         dig_features_amplitude(plain, NULL, size);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             difference[f] = a->feature[i][f] - b->feature[i][f];
         }
-        offer(tell, false, in_scatters(t, k, difference, size), "a dig along ",
-              t->set->trajectory[k].name, "");
+        offer(tell, false, in_scatters(w, k, difference, size), "a dig along ",
+              w->set->trajectory[k].name, "");
     }
     return status;
 }
@@ -243,13 +240,11 @@ static void list_pairs(struct dig_trace *const trace)
     }
 }
 
-static enum dig_status tell_machines(const struct dig_tracing *const         t,
-                                     const struct dig_machine_side *const    side,
-                                     const struct dig_machine_finding *const air,
-                                     struct dig_trace *const                 trace)
+static enum dig_status tell_machines(const struct dig_trace_work *const w,
+                                     struct dig_trace *const            trace)
 {
     struct of_machine *const   made    = calloc(DIG_MACHINE_EFFECTS, sizeof *made);
-    struct dig_measured *const scratch = malloc((t->digs + 1) * sizeof *scratch);
+    struct dig_measured *const scratch = malloc((w->digs + 1) * sizeof *scratch);
     enum dig_status            status  = made != NULL && scratch != NULL ? DIG_OK : DIG_ENOMEM;
     bool                       done[DIG_MACHINE_EFFECTS] = { false };
     for (size_t i = 0; i < trace->tells && status == DIG_OK; i++) {
@@ -257,12 +252,12 @@ static enum dig_status tell_machines(const struct dig_tracing *const         t,
         for (size_t e = 0; e < 2 && dig_effect_is_of_machine(tell->effect[0]); e++) {
             const enum dig_effect_id id = tell->effect[e];
             if (status == DIG_OK && !done[id]) {
-                status   = work_out(t, side, air, id, scratch, &made[id]);
+                status   = work_out(w, id, scratch, &made[id]);
                 done[id] = true;
             }
         }
         if (status == DIG_OK && dig_effect_is_of_machine(tell->effect[0])) {
-            status = tell_machine(t, side, &made[tell->effect[0]], &made[tell->effect[1]], tell);
+            status = tell_machine(w, &made[tell->effect[0]], &made[tell->effect[1]], tell);
         }
     }
     free(made);
@@ -270,19 +265,16 @@ static enum dig_status tell_machines(const struct dig_tracing *const         t,
     return status;
 }
 
-enum dig_status dig_tell_apart(const struct dig_tracing *const         t,
-                               const struct dig_machine_side *const    side,
-                               const struct dig_machine_finding *const air,
-                               struct dig_trace *const                 trace)
+enum dig_status dig_tell_apart(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    assert(t != NULL && air != NULL && trace != NULL);
+    assert(w != NULL && trace != NULL);
     list_pairs(trace);
     for (size_t i = 0; i < trace->tells; i++) {
         if (!dig_effect_is_of_machine(trace->tell[i].effect[0])) {
-            tell_soil(t, &trace->tell[i]);
+            tell_soil(w, &trace->tell[i]);
         }
     }
-    return side != NULL ? tell_machines(t, side, air, trace) : DIG_OK;
+    return w->machine != NULL ? tell_machines(w, trace) : DIG_OK;
 }
 
 void dig_tell_apart_say(const struct dig_tell_apart *const tell, const size_t size, char text[])

@@ -6,9 +6,6 @@
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/verdict/residuals.h"
 #include "closed_loop/verdict/tell_apart.h"
-#include "closed_loop/verdict/trace_ground.h"
-#include "closed_loop/verdict/trace_parts.h"
-#include "closed_loop/verdict/trace_verdict.h"
 #include "closed_loop/verdict/trace_work.h"
 
 #include <assert.h>
@@ -54,9 +51,7 @@ static enum dig_status out_of_memory(struct dig_error *const error)
     return dig_error_set(error, DIG_ENOMEM, "out of memory");
 }
 
-static enum dig_status prepare(const struct dig_curve_set *const set, const char *const table,
-                               const struct dig_effect_set *const effects,
-                               struct dig_trace_work *const w, struct dig_error *const error)
+static enum dig_status prepare(struct dig_trace_work *const w, struct dig_error *const error)
 {
     w->surface = calloc(1, sizeof *w->surface);
     w->batch   = calloc(1, sizeof *w->batch);
@@ -67,18 +62,18 @@ static enum dig_status prepare(const struct dig_curve_set *const set, const char
         w->open == NULL) {
         return out_of_memory(error);
     }
-    if (dig_response_surface_fit(set, w->surface) != DIG_OK) {
+    if (dig_response_surface_fit(w->set, w->surface) != DIG_OK) {
         return dig_error_set(error, DIG_EINVAL,
                              "the table holds too few gravels to trace with, expected %d or more",
                              DIG_RESPONSE_SURFACE_LEAST);
     }
-    enum dig_status status = table != NULL
-                                 ? dig_scatter_measure(table, w->surface, &w->scatter, error)
+    enum dig_status status = w->table != NULL
+                                 ? dig_scatter_measure(w->table, w->surface, &w->scatter, error)
                                  : dig_scatter_pool(w->surface, 0, NULL, &w->scatter);
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_soil_create(w->surface, effects, w->scatter, &w->soil);
+    status = dig_soil_create(w->surface, w->effects, w->scatter, &w->soil);
     return status == DIG_EINVAL
                ? dig_error_set(error, status,
                                "the table of effects is of another scene, expected "
@@ -86,23 +81,21 @@ static enum dig_status prepare(const struct dig_curve_set *const set, const char
                : status;
 }
 
-static enum dig_status check_digs(const struct dig_curve_set *const set, const size_t digs,
-                                  const struct dig_measured    measured[],
-                                  struct dig_trace_work *const w, struct dig_error *const error)
+static enum dig_status check_digs(struct dig_trace_work *const w, struct dig_error *const error)
 {
     size_t fits = 0;
-    if (digs > DIG_MEASURED_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "%zu digs, expected at most %d", digs,
+    if (w->digs > DIG_MEASURED_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%zu digs, expected at most %d", w->digs,
                              DIG_MEASURED_MAX);
     }
-    for (size_t i = 0; i < digs; i++) {
-        const int t = measured[i].trajectory;
-        if (t < 0 || (size_t)t >= set->trajectories || !w->surface->known[t]) {
+    for (size_t i = 0; i < w->digs; i++) {
+        const int t = w->measured[i].trajectory;
+        if (t < 0 || (size_t)t >= w->set->trajectories || !w->surface->known[t]) {
             return dig_error_set(error, DIG_EINVAL,
                                  "%s: along a trajectory whose curves the table lacks",
-                                 measured[i].name);
+                                 w->measured[i].name);
         }
-        w->holdout[i] = measured[i].use == DIG_USE_HOLDOUT;
+        w->holdout[i] = w->measured[i].use == DIG_USE_HOLDOUT;
         w->fit[i]     = !w->holdout[i];
         fits += w->fit[i] ? 1 : 0;
     }
@@ -113,70 +106,63 @@ static enum dig_status check_digs(const struct dig_curve_set *const set, const s
                                      fits);
 }
 
-static struct dig_gravel gravel_at(const struct dig_response_surface *const surface,
-                                   const double                             number[])
+static void fill_decision(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    return dig_response_surface_gravel(surface, number);
-}
-
-static void fill_decision(const struct dig_tracing *const t, const struct dig_machine_side *const m,
-                          const struct dig_machine_finding *const air,
-                          struct dig_trace *const                 trace)
-{
-    const struct dig_search *const s = t->search;
-    trace->false_alarm               = t->settings->false_alarm;
-    trace->no_air                    = air->no_air;
-    trace->significant               = air->significant || (s->significant && !s->outside);
+    const struct dig_machine_finding *const  air     = w->air;
+    const struct dig_search *const           s       = w->search;
+    const struct dig_response_surface *const surface = w->surface;
+    const bool                               machine = w->machine != NULL;
+    trace->false_alarm                               = w->settings->false_alarm;
+    trace->no_air                                    = air->no_air;
+    trace->significant = air->significant || (s->significant && !s->outside);
     trace->p_complete =
-        m != NULL ? fmin(1.0, 2.0 * fmin(air->p_complete, s->p_complete)) : s->p_complete;
-    dig_trace_fill_residuals(t, trace->residual);
-    trace->residual[DIG_PART_AIR] = m != NULL ? air->residual_air : (double)NAN;
+        machine ? fmin(1.0, 2.0 * fmin(air->p_complete, s->p_complete)) : s->p_complete;
+    dig_trace_fill_residuals(w, trace->residual);
+    trace->residual[DIG_PART_AIR] = machine ? air->residual_air : (double)NAN;
     for (size_t i = 0; i < air->candidates && trace->candidates < DIG_TRACE_CANDIDATES_MAX; i++) {
         trace->candidate[trace->candidates++] = air->candidate[i];
     }
-    trace->gravel_before = gravel_at(t->surface, t->before->number);
-    trace->low_before    = gravel_at(t->surface, t->before->low);
-    trace->high_before   = gravel_at(t->surface, t->before->high);
-    trace->gravel        = gravel_at(t->surface, s->chosen.number);
-    trace->low           = gravel_at(t->surface, s->chosen.low);
-    trace->high          = gravel_at(t->surface, s->chosen.high);
+    trace->gravel_before = dig_response_surface_gravel(surface, w->before.number);
+    trace->low_before    = dig_response_surface_gravel(surface, w->before.low);
+    trace->high_before   = dig_response_surface_gravel(surface, w->before.high);
+    trace->gravel        = dig_response_surface_gravel(surface, s->chosen.number);
+    trace->low           = dig_response_surface_gravel(surface, s->chosen.low);
+    trace->high          = dig_response_surface_gravel(surface, s->chosen.high);
 }
 
 // A change is named, but not made, that is likely to make the next dig's error worse, or that has
 // made it worse already: forces may ask for what the moment does not.
-static void drop_what_is_not_worth_it(const struct dig_tracing *const    t,
-                                      const struct dig_trace_work *const w,
+static void drop_what_is_not_worth_it(const struct dig_trace_work *const w,
                                       struct dig_trace *const            trace)
 {
     trace->applied =
         w->confirmed &&
-        dig_decision_brings_nearer(t->set, t->digs, t->measured, trace->curves, w->fit) &&
-        dig_decision_chance_of_worse(t->set, t->scatter, t->digs, t->measured, trace->curves) <=
+        dig_decision_brings_nearer(w->set, w->digs, w->measured, trace->curves, w->fit) &&
+        dig_decision_chance_of_worse(w->set, w->scatter, w->digs, w->measured, trace->curves) <=
             most_chance_of_worse;
     if (trace->applied) {
         return;
     }
-    for (size_t i = 0; i < t->digs; i++) {
+    for (size_t i = 0; i < w->digs; i++) {
         struct dig_trace_curves *const c = &trace->curves[i];
         memcpy(c->after, c->before, sizeof c->after);
         memcpy(c->after_sd, c->before_sd, sizeof c->after_sd);
     }
 }
 
-static void fill_errors(const struct dig_tracing *const t, const struct dig_trace_work *const w,
-                        struct dig_trace *const trace)
+static void fill_errors(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
     bool any = false;
-    for (size_t i = 0; i < t->digs; i++) {
+    for (size_t i = 0; i < w->digs; i++) {
         any = any || w->holdout[i];
         trace->holdouts += w->holdout[i] ? 1 : 0;
     }
-    trace->before = dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->holdout, false,
-                                    t->settings->seed);
-    trace->after  = dig_judge_error(t->set, t->digs, t->measured, trace->curves, w->holdout, true,
-                                    t->settings->seed);
+    trace->before = dig_judge_error(w->set, w->digs, w->measured, trace->curves, w->holdout, false,
+                                    w->settings->seed);
+    trace->after  = dig_judge_error(w->set, w->digs, w->measured, trace->curves, w->holdout, true,
+                                    w->settings->seed);
     trace->noise_floor =
-        dig_judge_floor(t->set, t->digs, t->measured, trace->curves, any ? w->holdout : w->fit);
+        dig_judge_floor(w->set, w->digs, w->measured, trace->curves, any ? w->holdout : w->fit);
 }
 
 // Where nothing better is to be said: why a probability stops at one half.
@@ -193,35 +179,31 @@ static void advise_on_size(const struct dig_trace_work *const w, struct dig_trac
     }
 }
 
-static enum dig_status report(const struct dig_tracing *const      t,
-                              const struct dig_trace_work *const   w,
-                              const struct dig_machine_side *const machine,
-                              struct dig_trace *const              trace)
+static enum dig_status report(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    trace->curves          = calloc(t->digs + 1, sizeof *trace->curves);
-    trace->digs            = t->digs;
+    trace->curves          = calloc(w->digs + 1, sizeof *trace->curves);
+    trace->digs            = w->digs;
     enum dig_status status = trace->curves == NULL ? DIG_ENOMEM : DIG_OK;
     if (status == DIG_OK) {
-        fill_decision(t, machine, w->air, trace);
-        status = dig_trace_fill_verdict(t, w->air, trace);
+        fill_decision(w, trace);
+        status = dig_trace_fill_verdict(w, trace);
 
         trace->significant = trace->significant || trace->effects > 0;
     }
     if (status == DIG_OK) {
-        dig_trace_fill_candidates(t, trace);
-        dig_trace_fill_curves(t, trace->unlisted, trace->curves);
-        drop_what_is_not_worth_it(t, w, trace);
-        fill_errors(t, w, trace);
+        dig_trace_fill_candidates(w, trace);
+        dig_trace_fill_curves(w, trace->unlisted, trace->curves);
+        drop_what_is_not_worth_it(w, trace);
+        fill_errors(w, trace);
         trace->residuals = malloc(sizeof *trace->residuals);
-        status = trace->residuals != NULL ? dig_residuals_make(t, machine != NULL ? w->air : NULL,
-                                                               trace->curves, trace->residuals)
+        status = trace->residuals != NULL ? dig_residuals_make(w, trace->curves, trace->residuals)
                                           : DIG_ENOMEM;
     }
     if (status == DIG_OK) {
-        status = dig_tell_apart(t, machine, w->air, trace);
+        status = dig_tell_apart(w, trace);
     }
     if (status == DIG_OK) {
-        dig_trace_advise(t, trace);
+        dig_trace_advise(w, trace);
         advise_on_size(w, trace);
         dig_trace_advise_on_air(w, trace);
     }
@@ -299,41 +281,40 @@ static enum dig_status find_intervals(struct dig_trace_work *const w, const uint
     return status;
 }
 
-static enum dig_status run(const struct dig_curve_set *const set, const char *const table,
-                           const struct dig_effect_set *const     effects,
-                           const struct dig_trace_settings *const settings,
-                           struct dig_machine_side *const machine, const size_t digs,
-                           struct dig_measured measured[], struct dig_trace_work *const w,
-                           struct dig_trace *const trace, struct dig_error *const error)
+static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *const trace,
+                           struct dig_error *const error)
 {
-    enum dig_status status = prepare(set, table, effects, w, error);
+    const struct dig_trace_settings *const settings = w->settings;
+
+    enum dig_status status = prepare(w, error);
     if (status == DIG_OK) {
-        status = check_digs(set, digs, measured, w, error);
+        status = check_digs(w, error);
     }
     if (status == DIG_OK) {
-        status = dig_trace_batch(w, digs, measured, &w->before, error);
+        status = dig_trace_batch(w, &w->before, error);
     }
     if (status == DIG_OK) {
         status = dig_posterior_intervals(w->batch, w->soil, settings->seed, &w->before, NULL);
     }
     double            covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
     struct dig_fitted plain = w->before;
-    if (status == DIG_OK && machine != NULL) {
+    if (status == DIG_OK && w->machine != NULL) {
         choose_rate(w);
-        status = dig_trace_machine(machine, settings, digs, measured, w, &plain, error);
+        status = dig_trace_machine(w, &plain, error);
     }
     if (status == DIG_OK) {
         choose_rate(w);
-        const double level = machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
+        const double level =
+            w->machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
         status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
                                 w->search);
     }
     if (status == DIG_OK) {
-        dig_trace_doubt_soil(w->air, w->search);
+        dig_trace_doubt_soil(w);
         status = find_intervals(w, settings->seed, covariance);
     }
     if (status == DIG_OK) {
-        status = dig_trace_settle_machine(machine, covariance, measured, w);
+        status = dig_trace_settle_machine(w, covariance);
     }
     if (status == DIG_OK) {
         status = weigh_soil(w);
@@ -348,13 +329,10 @@ static enum dig_status run(const struct dig_curve_set *const set, const char *co
     if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {
         w->search->chosen = w->before;
     }
-    const struct dig_tracing t = { set,  w->surface, w->scatter, w->soil,    settings,
-                                   digs, measured,   w->batch,   &w->before, w->search };
     if (status == DIG_OK) {
-        status = dig_trace_ground(table, w->surface, w->batch, w->search->chosen.number,
-                                  &trace->ground, error);
+        status = dig_trace_ground(w, &trace->ground, error);
     }
-    return status == DIG_OK ? report(&t, w, machine, trace) : status;
+    return status == DIG_OK ? report(w, trace) : status;
 }
 
 enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char *const table,
@@ -366,13 +344,18 @@ enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char 
 {
     assert(set != NULL && settings != NULL && measured != NULL && trace != NULL);
     struct dig_error      why  = { "" };
-    struct dig_trace_work w    = { .surface = NULL };
+    struct dig_trace_work w    = { .set      = set,
+                                   .table    = table,
+                                   .effects  = effects,
+                                   .settings = settings,
+                                   .machine  = machine,
+                                   .digs     = digs,
+                                   .measured = measured };
     struct dig_trace     *made = calloc(1, sizeof *made);
     if (made == NULL) {
         return out_of_memory(error);
     }
-    const enum dig_status status =
-        run(set, table, effects, settings, machine, digs, measured, &w, made, &why);
+    const enum dig_status status = run(&w, made, &why);
     if (status == DIG_OK) {
         *trace = *made;
     } else {

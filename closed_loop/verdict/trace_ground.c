@@ -1,4 +1,4 @@
-#include "closed_loop/verdict/trace_ground.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include "tables/scene.h"
 
@@ -7,21 +7,20 @@
 #include <stdlib.h>
 
 // How hard one gravel resists over another: My, the geometric mean over the trajectories dug.
-static double ratio_of(const struct dig_response_surface *const surface,
-                       const struct dig_whitened_digs *const batch, const double above[DIG_AXES],
+static double ratio_of(const struct dig_trace_work *const w, const double above[DIG_AXES],
                        const double below[DIG_AXES])
 {
     double sum = 0.0;
-    for (size_t g = 0; g < batch->groups; g++) {
-        const size_t t = batch->group[g].trajectory;
+    for (size_t g = 0; g < w->batch->groups; g++) {
+        const size_t t = w->batch->group[g].trajectory;
         double       feature[DIG_FEATURES];
         double       size[DIG_FORCE_CHANNELS];
         double       other[DIG_FORCE_CHANNELS];
-        dig_response_surface_features(surface, t, above, feature, size);
-        dig_response_surface_features(surface, t, below, feature, other);
+        dig_response_surface_features(w->surface, t, above, feature, size);
+        dig_response_surface_features(w->surface, t, below, feature, other);
         sum += log(size[DIG_CHANNEL_MY_Nm] / other[DIG_CHANNEL_MY_Nm]);
     }
-    return exp(sum / (double)batch->groups);
+    return exp(sum / (double)w->batch->groups);
 }
 
 // The friction of the table's bucket, where it has one of its own.
@@ -44,20 +43,20 @@ static enum dig_status take_bucket(const char *const table, struct dig_effect_gr
     return status;
 }
 
-enum dig_status
-dig_trace_ground(const char *const table, const struct dig_response_surface *const surface,
-                 const struct dig_whitened_digs *const batch, const double place[DIG_AXES],
-                 struct dig_effect_ground *const ground, struct dig_error *const error)
+enum dig_status dig_trace_ground(const struct dig_trace_work *const w,
+                                 struct dig_effect_ground *const    ground,
+                                 struct dig_error *const            error)
 {
-    assert(surface != NULL && batch != NULL && place != NULL && ground != NULL);
-    ground->gravel          = dig_response_surface_gravel(surface, place);
-    ground->bucket_friction = ground->gravel.value[DIG_AXIS_FRICTION];
-    ground->bucket_rolling  = ground->gravel.value[DIG_AXIS_ROLLING];
+    assert(w != NULL && ground != NULL);
+    const double *const place = w->search->chosen.number;
+    ground->gravel            = dig_response_surface_gravel(w->surface, place);
+    ground->bucket_friction   = ground->gravel.value[DIG_AXIS_FRICTION];
+    ground->bucket_rolling    = ground->gravel.value[DIG_AXIS_ROLLING];
     for (int loose = 0; loose < 2; loose++) {
         const struct dig_gravel layer = dig_effect_layer_gravel(loose == 1);
         double                  at[DIG_AXES];
-        dig_response_surface_place(surface, &layer, at);
-        ground->layer[loose] = ratio_of(surface, batch, at, place);
+        dig_response_surface_place(w->surface, &layer, at);
+        ground->layer[loose] = ratio_of(w, at, place);
     }
-    return table != NULL ? take_bucket(table, ground, error) : DIG_OK;
+    return w->table != NULL ? take_bucket(w->table, ground, error) : DIG_OK;
 }

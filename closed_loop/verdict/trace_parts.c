@@ -1,4 +1,4 @@
-#include "closed_loop/verdict/trace_parts.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/recordings/regressors.h"
@@ -52,19 +52,19 @@ static bool is_lifting(const struct dig_curve_set *const set, const size_t traje
 }
 
 // Sums squares over the scatter's by part: what[] is in units of the table.
-static void sum_by_part(const struct dig_tracing *const             t,
+static void sum_by_part(const struct dig_trace_work *const          w,
                         const struct dig_whitened_digs_group *const group,
                         const double what[DIG_FEATURES], const double variance,
                         double sum[DIG_TRACE_PHASES], double count[DIG_TRACE_PHASES])
 {
     for (size_t i = 0; i < group->features; i++) {
         const size_t        f        = group->feature[i];
-        const enum dig_part part     = is_lifting(t->set, group->trajectory, f % DIG_FEATURE_BINS)
+        const enum dig_part part     = is_lifting(w->set, group->trajectory, f % DIG_FEATURE_BINS)
                                            ? DIG_PART_LIFTED
                                            : DIG_PART_SOIL;
         const double        relative = what[f] / group->amplitude[f / DIG_FEATURE_BINS];
         sum[part] +=
-            relative * relative / (t->scatter->covariance[group->trajectory][f][f] * variance);
+            relative * relative / (w->scatter->covariance[group->trajectory][f][f] * variance);
         count[part] += 1.0;
     }
 }
@@ -83,7 +83,7 @@ struct dig_model_effect dig_trace_rock(const struct dig_rock *const rock, const 
     return made;
 }
 
-enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
+enum dig_part dig_trace_seen_in(const struct dig_trace_work *const w,
                                 const struct dig_fitted *const fitted, const size_t effect)
 {
     double sum[DIG_TRACE_PHASES]   = { 0.0 };
@@ -91,39 +91,40 @@ enum dig_part dig_trace_seen_in(const struct dig_tracing *const t,
     double without[DIG_HYPOTHESIS_NUMBERS];
     memcpy(without, fitted->number, sizeof without);
     without[DIG_AT_U(effect)] = 0.0;
-    for (size_t i = 0; i < t->batch->digs; i++) {
-        const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
+    for (size_t i = 0; i < w->batch->digs; i++) {
+        const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
         double                           with[DIG_FEATURES];
         double                           plain[DIG_FEATURES];
         double                           noise;
-        dig_hypothesis_features(t->soil, &fitted->hypothesis, fitted->number, dig, with, &noise);
-        dig_hypothesis_features(t->soil, &fitted->hypothesis, without, dig, plain, &noise);
+        dig_hypothesis_features(w->soil, &fitted->hypothesis, fitted->number, dig, with, &noise);
+        dig_hypothesis_features(w->soil, &fitted->hypothesis, without, dig, plain, &noise);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             with[f] -= plain[f];
         }
-        sum_by_part(t, &t->batch->group[t->batch->dig[i].group], with, 1.0, sum, count);
+        sum_by_part(w, &w->batch->group[w->batch->dig[i].group], with, 1.0, sum, count);
     }
     return sum[DIG_PART_LIFTED] > sum[DIG_PART_SOIL] ? DIG_PART_LIFTED : DIG_PART_SOIL;
 }
 
-void dig_trace_fill_residuals(const struct dig_tracing *const t, double residual[DIG_TRACE_PHASES])
+void dig_trace_fill_residuals(const struct dig_trace_work *const w,
+                              double                             residual[DIG_TRACE_PHASES])
 {
     double sum[DIG_TRACE_PHASES]   = { 0.0 };
     double count[DIG_TRACE_PHASES] = { 0.0 };
-    for (size_t g = 0; g < t->batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &t->batch->group[g];
+    for (size_t g = 0; g < w->batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &w->batch->group[g];
         double                                      model[DIG_FEATURES];
         double                                      mean[DIG_FEATURES] = { 0.0 };
         double                                      noise;
-        dig_hypothesis_features(t->soil, &t->search->plain.hypothesis, t->search->plain.number,
-                                dig_whitened_digs_first(t->batch, g), model, &noise);
-        for (size_t i = 0; i < t->batch->digs; i++) {
-            if (t->batch->dig[i].group != g) {
+        dig_hypothesis_features(w->soil, &w->search->plain.hypothesis, w->search->plain.number,
+                                dig_whitened_digs_first(w->batch, g), model, &noise);
+        for (size_t i = 0; i < w->batch->digs; i++) {
+            if (w->batch->dig[i].group != g) {
                 continue;
             }
             double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
             double                           feature[DIG_FEATURES];
-            const struct dig_measured *const dig = &t->measured[t->batch->dig[i].measured];
+            const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                     curve[c][k] = dig->value[c][k] - dig->machine[c][k];
@@ -137,7 +138,7 @@ void dig_trace_fill_residuals(const struct dig_tracing *const t, double residual
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             mean[f] -= model[f];
         }
-        sum_by_part(t, group, mean, 1.0 / (double)group->digs + t->search->plain.noise[g], sum,
+        sum_by_part(w, group, mean, 1.0 / (double)group->digs + w->search->plain.noise[g], sum,
                     count);
     }
     for (size_t p = 0; p < DIG_TRACE_PHASES; p++) {
@@ -146,15 +147,15 @@ void dig_trace_fill_residuals(const struct dig_tracing *const t, double residual
 }
 
 // v of a trajectory at a fitted hypothesis; of one that no dig was fitted along, the surface's.
-static double noise_along(const struct dig_tracing *const t, const struct dig_fitted *const fitted,
-                          const size_t trajectory)
+static double noise_along(const struct dig_trace_work *const w,
+                          const struct dig_fitted *const fitted, const size_t trajectory)
 {
-    for (size_t g = 0; g < t->batch->groups; g++) {
-        if (t->batch->group[g].trajectory == trajectory) {
+    for (size_t g = 0; g < w->batch->groups; g++) {
+        if (w->batch->group[g].trajectory == trajectory) {
             return fitted->noise[g];
         }
     }
-    return dig_response_surface_noise(t->surface, trajectory, fitted->number);
+    return dig_response_surface_noise(w->surface, trajectory, fitted->number);
 }
 
 static void add_unlisted(const struct dig_model_unlisted *const unlisted, const size_t trajectory,
@@ -171,31 +172,31 @@ static void add_unlisted(const struct dig_model_unlisted *const unlisted, const 
     }
 }
 
-void dig_trace_fill_curves(const struct dig_tracing *const        t,
+void dig_trace_fill_curves(const struct dig_trace_work *const     w,
                            const struct dig_model_unlisted *const unlisted,
                            struct dig_trace_curves                curves[])
 {
-    const struct dig_fitted *const before = t->before;
-    const struct dig_fitted *const after  = &t->search->chosen;
-    for (size_t i = 0; i < t->digs; i++) {
-        const struct dig_measured *const dig        = &t->measured[i];
+    const struct dig_fitted *const before = &w->before;
+    const struct dig_fitted *const after  = &w->search->chosen;
+    for (size_t i = 0; i < w->digs; i++) {
+        const struct dig_measured *const dig        = &w->measured[i];
         const size_t                     trajectory = (size_t)dig->trajectory;
         struct dig_trace_curves *const   c          = &curves[i];
         memset(c, 0, sizeof *c);
-        if (!t->surface->known[trajectory]) {
+        if (!w->surface->known[trajectory]) {
             continue;
         }
-        dig_hypothesis_curve(t->soil, &before->hypothesis, before->number, dig, c->before);
-        dig_judge_sd(t->surface, t->scatter, trajectory, before->number,
-                     noise_along(t, before, trajectory), c->before_sd);
-        dig_hypothesis_curve(t->soil, &after->hypothesis, after->number, dig, c->after);
-        dig_judge_sd(t->surface, t->scatter, trajectory, after->number,
-                     noise_along(t, after, trajectory), c->after_sd);
+        dig_hypothesis_curve(w->soil, &before->hypothesis, before->number, dig, c->before);
+        dig_judge_sd(w->surface, w->scatter, trajectory, before->number,
+                     noise_along(w, before, trajectory), c->before_sd);
+        dig_hypothesis_curve(w->soil, &after->hypothesis, after->number, dig, c->after);
+        dig_judge_sd(w->surface, w->scatter, trajectory, after->number,
+                     noise_along(w, after, trajectory), c->after_sd);
         if (unlisted != NULL) {
             add_unlisted(unlisted, trajectory, c->after);
         }
         double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        dig_response_surface_curve(t->surface, trajectory, after->number, plain);
+        dig_response_surface_curve(w->surface, trajectory, after->number, plain);
         dig_judge_sd_of_dug((const double(*)[DIG_CURVE_POINTS])plain,
                             (const double(*)[DIG_CURVE_POINTS])c->after, c->after_sd);
         for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
@@ -207,31 +208,31 @@ void dig_trace_fill_curves(const struct dig_tracing *const        t,
 }
 
 // CONTRACT's error of the digs fitted to, by one candidate.
-static double fit_error(const struct dig_tracing *const t, const struct dig_fitted *const fitted)
+static double fit_error(const struct dig_trace_work *const w, const struct dig_fitted *const fitted)
 {
     bool                           take[DIG_MEASURED_MAX] = { false };
-    struct dig_trace_curves *const curves                 = calloc(t->digs, sizeof *curves);
+    struct dig_trace_curves *const curves                 = calloc(w->digs, sizeof *curves);
     if (curves == NULL) {
         return (double)NAN;
     }
-    for (size_t i = 0; i < t->batch->digs; i++) {
-        const size_t m = t->batch->dig[i].measured;
+    for (size_t i = 0; i < w->batch->digs; i++) {
+        const size_t m = w->batch->dig[i].measured;
         take[m]        = true;
-        dig_hypothesis_curve(t->soil, &fitted->hypothesis, fitted->number, &t->measured[m],
+        dig_hypothesis_curve(w->soil, &fitted->hypothesis, fitted->number, &w->measured[m],
                              curves[m].after);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            curves[m].after[DIG_CHANNEL_MY_Nm][k] += t->measured[m].machine[DIG_CHANNEL_MY_Nm][k];
+            curves[m].after[DIG_CHANNEL_MY_Nm][k] += w->measured[m].machine[DIG_CHANNEL_MY_Nm][k];
         }
     }
-    const double error = dig_judge_error(t->set, t->digs, t->measured, curves, take, true, 1).value;
+    const double error = dig_judge_error(w->set, w->digs, w->measured, curves, take, true, 1).value;
     free(curves);
     return error;
 }
 
 // It is looked for when all else has failed, and was in no bootstrap.
-static void list_rock(const struct dig_tracing *const t, struct dig_trace *const trace)
+static void list_rock(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    const struct dig_rock *const  rock = &t->search->rock;
+    const struct dig_rock *const  rock = &w->search->rock;
     struct dig_candidate *const   c    = &trace->candidate[trace->candidates++];
     const struct dig_model_effect made = dig_trace_rock(rock, 0.0);
     *c                                 = (struct dig_candidate){ .effect       = made.effect,
@@ -244,12 +245,12 @@ static void list_rock(const struct dig_tracing *const t, struct dig_trace *const
     memcpy(c->parameter, made.parameter, sizeof c->parameter);
 }
 
-void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_trace *const trace)
+void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    const struct dig_search *const s                     = t->search;
+    const struct dig_search *const s                     = w->search;
     bool                           taken[DIG_RIVALS_MAX] = { false };
     if (s->is_rock && trace->candidates < DIG_TRACE_CANDIDATES_MAX) {
-        list_rock(t, trace);
+        list_rock(w, trace);
     }
     for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
          turn++) {
@@ -261,24 +262,24 @@ void dig_trace_fill_candidates(const struct dig_tracing *const t, struct dig_tra
         }
         taken[next]                         = true;
         const struct dig_fitted *const f    = &s->rival[next];
-        const struct dig_model_effect  made = dig_trace_effect(t->soil, f, 0, 0.0);
+        const struct dig_model_effect  made = dig_trace_effect(w->soil, f, 0, 0.0);
         struct dig_candidate *const    c    = &trace->candidate[trace->candidates++];
         *c                                  = (struct dig_candidate){ .effect       = made.effect,
                                                                       .log_evidence = s->log_evidence[next],
                                                                       .p_fit        = s->rival_fit[next],
                                                                       .inclusion    = s->inclusion[next],
-                                                                      .error        = fit_error(t, f),
+                                                                      .error        = fit_error(w, f),
                                                                       .parameters   = made.parameters,
-                                                                      .seen_in      = dig_trace_seen_in(t, f, 0) };
+                                                                      .seen_in      = dig_trace_seen_in(w, f, 0) };
         memcpy(c->parameter, made.parameter, sizeof c->parameter);
     }
 }
 
-void dig_trace_advise(const struct dig_tracing *const t, struct dig_trace *const trace)
+void dig_trace_advise(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    const struct dig_search *const s = t->search;
+    const struct dig_search *const s = w->search;
     if (s->outside) {
-        const struct dig_gravel g = dig_response_surface_gravel(t->surface, s->chosen.number);
+        const struct dig_gravel g = dig_response_surface_gravel(w->surface, s->chosen.number);
         (void)snprintf(trace->advice, sizeof trace->advice,
                        "no effect: the gravel lies beyond the table's grid, near friction %.2f, "
                        "rolling %.2f, %.0f kg/m3; compute a table that holds it",

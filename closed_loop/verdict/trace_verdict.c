@@ -1,7 +1,6 @@
-#include "closed_loop/verdict/trace_verdict.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include "closed_loop/search/unlisted.h"
-#include "closed_loop/verdict/trace_work.h"
 
 #include <assert.h>
 #include <math.h>
@@ -31,10 +30,11 @@ static enum dig_part largest_part(const double residual[DIG_TRACE_PHASES])
     return residual[DIG_PART_LIFTED] > residual[DIG_PART_SOIL] ? DIG_PART_LIFTED : DIG_PART_SOIL;
 }
 
-void dig_trace_doubt_soil(const struct dig_machine_finding *const air,
-                          struct dig_search *const                search)
+void dig_trace_doubt_soil(struct dig_trace_work *const w)
 {
-    assert(air != NULL && search != NULL);
+    assert(w != NULL);
+    const struct dig_machine_finding *const air    = w->air;
+    struct dig_search *const                search = w->search;
     if (air->unexplained && search->significant && !search->outside) {
         search->unlisted = true;
         search->is_rock  = false;
@@ -43,12 +43,12 @@ void dig_trace_doubt_soil(const struct dig_machine_finding *const air,
 }
 
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): one step after another
-enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t,
-                                       const struct dig_machine_finding *const air,
-                                       struct dig_trace *const                 trace)
+enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *const w,
+                                       struct dig_trace *const            trace)
 {
-    assert(t != NULL && air != NULL && trace != NULL);
-    const struct dig_search *const s = t->search;
+    assert(w != NULL && trace != NULL);
+    const struct dig_machine_finding *const air = w->air;
+    const struct dig_search *const          s   = w->search;
     fill_sets(s, air, trace);
     for (size_t e = 0; e < air->effects; e++) {
         trace->seen_in[trace->effects]  = air->by_digs ? DIG_PART_SOIL : DIG_PART_AIR;
@@ -57,9 +57,9 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
     for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects &&
                        trace->effects < DIG_MODEL_EFFECTS_MAX;
          e++) {
-        trace->seen_in[trace->effects] = dig_trace_seen_in(t, &s->chosen, e);
+        trace->seen_in[trace->effects] = dig_trace_seen_in(w, &s->chosen, e);
         trace->effect[trace->effects++] =
-            dig_trace_effect(t->soil, &s->chosen, e, claimed(air, s->probability[e]));
+            dig_trace_effect(w->soil, &s->chosen, e, claimed(air, s->probability[e]));
     }
     const bool of_soil = s->significant && s->unlisted;
     if ((of_soil || air->unexplained) && trace->effects < DIG_MODEL_EFFECTS_MAX) {
@@ -68,7 +68,7 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
             return DIG_ENOMEM;
         }
         if (of_soil) {
-            dig_unlisted_correct(t->batch, t->soil, &s->chosen, trace->unlisted);
+            dig_unlisted_correct(w->batch, w->soil, &s->chosen, trace->unlisted);
         }
         (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
                        s->is_rock             ? "where the rock lies"
@@ -82,7 +82,7 @@ enum dig_status dig_trace_fill_verdict(const struct dig_tracing *const         t
             .effect = DIG_EFFECT_UNLISTED,
             .probability =
                 of_soil ? in_soil
-                        : s->unnamed * fmax(1.0 - air->p_complete, 1.0 - t->settings->false_alarm)
+                        : s->unnamed * fmax(1.0 - air->p_complete, 1.0 - w->settings->false_alarm)
         };
         trace->effect[trace->effects++] = s->is_rock ? dig_trace_rock(&s->rock, in_soil) : unnamed;
     }

@@ -1,11 +1,10 @@
-// What trace.c and machine_choice.c work on together. Internal to them.
+// A trace in progress, which the sources of this room work on together. Internal to them.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H
 #define DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H
 
 #include "closed_loop/machine/machine_side.h"
 #include "closed_loop/search/search.h"
-#include "closed_loop/verdict/machine_steps.h"
 #include "closed_loop/verdict/trace.h"
 
 /// Probability that is left to an effect too small for the digs to confirm it.
@@ -17,47 +16,94 @@ struct dig_trace_open {
     struct dig_steps          steps;
 };
 
-/// Everything that a trace needs memory for.
 struct dig_trace_work {
+    // Of the caller: see dig_trace_run().
+    const struct dig_curve_set      *set;
+    const char                      *table;
+    const struct dig_effect_set     *effects;
+    const struct dig_trace_settings *settings;
+    struct dig_machine_side         *machine;
+    size_t                           digs;
+    struct dig_measured             *measured;
+
     struct dig_response_surface *surface;
     struct dig_scatter          *scatter;
     struct dig_soil             *soil;
-    struct dig_whitened_digs    *batch;
+    struct dig_whitened_digs    *batch; // of the digs that may be fitted to
     struct dig_search           *search;
     struct dig_machine_finding  *air;
     struct dig_trace_open       *open;
-    struct dig_fitted            before;
+    struct dig_fitted            before; // the plain hypothesis on the raw digs
     bool                         fit[DIG_MEASURED_MAX], holdout[DIG_MEASURED_MAX];
     double                       size[DIG_MODEL_EFFECTS_MAX]; // of air's effects, in the soil
     bool                         confirmed; // what was chosen may be applied: see below
 };
 
 /// The batch of the digs to fit to, its scatter that of the gravel it turns out to be (*plain).
-DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w, size_t digs,
-                                               const struct dig_measured measured[],
+DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w,
                                                struct dig_fitted *plain, struct dig_error *error);
 
 /// Finds what is missing of the machine, by free air and the digs together, and takes it off the
 /// digs: leaves measured[].machine, the batch and *plain with it, what is open of it as the batch's
 /// steps, each effect's size in the digs in size[], and its probability weighed by that. w->before:
 /// the plain fit of the batch of the raw digs.
-DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_machine_side         *machine,
-                                                 const struct dig_trace_settings *settings,
-                                                 size_t digs, struct dig_measured measured[],
-                                                 struct dig_trace_work *w, struct dig_fitted *plain,
+DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_trace_work *w, struct dig_fitted *plain,
                                                  struct dig_error *error);
 
 /// Leaves the machine's effects, their intervals (by the covariance of z of the batch's steps) and
 /// measured[].machine as what the search chose has them. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_trace_settle_machine(const struct dig_machine_side *machine,
-                                                        const double                   covariance[],
-                                                        struct dig_measured            measured[],
-                                                        struct dig_trace_work         *w);
+DIG_MUST_CHECK enum dig_status dig_trace_settle_machine(struct dig_trace_work *w,
+                                                        const double           covariance[]);
 
 /// Leaves in confirmed whether what the search chose may change the prediction: always where free
 /// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
 /// better. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_trace_confirm_without_air(struct dig_trace_work *w);
+
+/// Gives up the names of what the soil shows while free air shows a machine that no effect
+/// explains: it may be the machine's.
+void dig_trace_doubt_soil(struct dig_trace_work *w);
+
+/// What the effects found are explained in to people: the gravel the search chose, the table's
+/// bucket (without a table as rough as the gravel), and how hard the layers that tables of effects
+/// hold resist beside the gravel. Opens the table. DIG_ENOMEM; fails as dig_table_scene().
+DIG_MUST_CHECK enum dig_status dig_trace_ground(const struct dig_trace_work *w,
+                                                struct dig_effect_ground    *ground,
+                                                struct dig_error            *error);
+
+/// Fills effects (the machine's first), where each is seen, the sets that cannot be told apart and
+/// what is added to the prediction for an effect without a name: nothing where free air shows a
+/// machine that no effect explains, because it may do otherwise to the next dig. Probabilities
+/// without free air are even at most. trace->residual says where what has no name is seen.
+/// DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *w,
+                                                      struct dig_trace            *trace);
+
+/// Numbers of a fitted effect as a model file and a report have them.
+struct dig_model_effect dig_trace_effect(const struct dig_soil   *soil,
+                                         const struct dig_fitted *fitted, size_t effect,
+                                         double probability);
+
+/// The same of a rock that lies elsewhere than the table's.
+struct dig_model_effect dig_trace_rock(const struct dig_rock *rock, double probability);
+
+/// The part of a dig in which a fitted effect is largest against the scatter.
+enum dig_part dig_trace_seen_in(const struct dig_trace_work *w, const struct dig_fitted *fitted,
+                                size_t effect);
+
+/// Curves before and after of all digs; unlisted (NULL: none) is added after.
+void dig_trace_fill_curves(const struct dig_trace_work     *w,
+                           const struct dig_model_unlisted *unlisted,
+                           struct dig_trace_curves          curves[]);
+
+/// Rms of the mean residual over what is expected, by part.
+void dig_trace_fill_residuals(const struct dig_trace_work *w, double residual[DIG_TRACE_PHASES]);
+
+/// The single effects, best first.
+void dig_trace_fill_candidates(const struct dig_trace_work *w, struct dig_trace *trace);
+
+/// What to do next, for people.
+void dig_trace_advise(const struct dig_trace_work *w, struct dig_trace *trace);
 
 /// Says first that the recordings hold no free air, where they do not.
 void dig_trace_advise_on_air(const struct dig_trace_work *w, struct dig_trace *trace);

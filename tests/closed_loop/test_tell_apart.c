@@ -50,14 +50,13 @@ static void candidate(const enum dig_effect_id effect, const double u)
 static void tell(const size_t channels, const size_t effects, const enum dig_effect_id effect[],
                  const double u[])
 {
-    const struct dig_machine_finding air = { .sets = 0 };
-    const struct dig_tracing         t   = { .set      = world.set,
-                                             .surface  = world.surface,
-                                             .scatter  = world.scatter,
-                                             .soil     = soil,
-                                             .digs     = DIGS,
-                                             .measured = measured,
-                                             .search   = search };
+    const struct dig_trace_work t = { .set      = world.set,
+                                      .surface  = world.surface,
+                                      .scatter  = world.scatter,
+                                      .soil     = soil,
+                                      .digs     = DIGS,
+                                      .measured = measured,
+                                      .search   = search };
     memset(search, 0, sizeof *search);
     memset(trace, 0, sizeof *trace);
     for (size_t i = 0; i < DIGS; i++) {
@@ -71,7 +70,7 @@ static void tell(const size_t channels, const size_t effects, const enum dig_eff
         trace->set[0].effect[i] = effect[i];
         candidate(effect[i], u[i]);
     }
-    assert_int_equal(dig_tell_apart(&t, NULL, &air, trace), DIG_OK);
+    assert_int_equal(dig_tell_apart(&t, trace), DIG_OK);
 }
 
 // Rms over the features of so much of the whole dig, in one dig's scatter.
@@ -162,8 +161,7 @@ static void what_differs_in_one_dig_is_told_by_that(void **state)
 static void there_is_room_for_so_many_pairs(void **state)
 {
     (void)state;
-    const struct dig_machine_finding air = { .sets = 0 };
-    const struct dig_tracing         t   = { .set = world.set, .search = search, .digs = DIGS };
+    const struct dig_trace_work t = { .set = world.set, .search = search, .digs = DIGS };
     memset(search, 0, sizeof *search);
     memset(trace, 0, sizeof *trace);
     trace->sets = 2;
@@ -172,7 +170,7 @@ static void there_is_room_for_so_many_pairs(void **state)
             trace->set[s].effect[trace->set[s].effects++] = (enum dig_effect_id)e;
         }
     }
-    assert_int_equal(dig_tell_apart(&t, NULL, &air, trace), DIG_OK);
+    assert_int_equal(dig_tell_apart(&t, trace), DIG_OK);
     assert_int_equal(trace->tells, DIG_TRACE_TELLS_MAX);
     assert_string_equal(trace->tell[0].how, "");
 }

@@ -1,4 +1,4 @@
-#include "closed_loop/verdict/trace_verdict.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include "estimator/effects/effect.h"
 #include "tests/closed_loop/world_fixture.h"
@@ -11,10 +11,11 @@ enum { DIGS = 6, DRAWS = 24 };
 static struct dig_measured             measured[DIGS];
 static struct dig_whitened_digs        batch;
 static struct dig_search               found;
+static struct dig_machine_finding      shown;
 static const struct dig_trace_settings settings = { .false_alarm = 0.01 };
 
 // Six digs, searched as they are: what the soil's side of a verdict is made of.
-static struct dig_tracing search(const enum dig_effect_id effect, const double magnitude)
+static struct dig_trace_work search(const enum dig_effect_id effect, const double magnitude)
 {
     static const bool       take[DIGS] = { true, true, true, true, true, true };
     const struct dig_gravel gravel     = { { 0.6, 0.55, 2500 } };
@@ -31,16 +32,25 @@ static struct dig_tracing search(const enum dig_effect_id effect, const double m
         DIG_OK);
     assert_int_equal(dig_search_run(&batch, soil, settings.false_alarm, DRAWS, seed, &found),
                      DIG_OK);
-    return (struct dig_tracing){ .set      = world.set,
-                                 .surface  = world.surface,
-                                 .scatter  = world.scatter,
-                                 .soil     = soil,
-                                 .settings = &settings,
-                                 .digs     = DIGS,
-                                 .measured = measured,
-                                 .batch    = &batch,
-                                 .before   = &found.plain,
-                                 .search   = &found };
+    return (struct dig_trace_work){ .set      = world.set,
+                                    .surface  = world.surface,
+                                    .scatter  = world.scatter,
+                                    .soil     = soil,
+                                    .settings = &settings,
+                                    .digs     = DIGS,
+                                    .measured = measured,
+                                    .batch    = &batch,
+                                    .before   = found.plain,
+                                    .search   = &found,
+                                    .air      = &shown };
+}
+
+static enum dig_status fill_verdict(const struct dig_trace_work *const      t,
+                                    const struct dig_machine_finding *const air,
+                                    struct dig_trace *const                 trace)
+{
+    shown = *air;
+    return dig_trace_fill_verdict(t, trace);
 }
 
 static double largest_correction(const struct dig_model_unlisted *const u)
@@ -60,13 +70,13 @@ static double largest_correction(const struct dig_model_unlisted *const u)
 static void what_has_no_name_is_corrected_whatever_free_air_shows(void **state)
 {
     (void)state;
-    const struct dig_tracing   t          = search(DIG_EFFECT_UNLISTED, 1.2);
-    struct dig_machine_finding air        = { .p_complete = 1.0 };
-    struct dig_trace           understood = { 0 };
-    struct dig_trace           strange    = { 0 };
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &understood), DIG_OK);
+    const struct dig_trace_work t          = search(DIG_EFFECT_UNLISTED, 1.2);
+    struct dig_machine_finding  air        = { .p_complete = 1.0 };
+    struct dig_trace            understood = { 0 };
+    struct dig_trace            strange    = { 0 };
+    assert_int_equal(fill_verdict(&t, &air, &understood), DIG_OK);
     air = (struct dig_machine_finding){ .significant = true, .unexplained = true };
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &strange), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &air, &strange), DIG_OK);
 
     assert_int_equal(understood.effects, 1);
     assert_int_equal(understood.effect[0].effect, DIG_EFFECT_UNLISTED);
@@ -81,13 +91,13 @@ static void what_has_no_name_is_corrected_whatever_free_air_shows(void **state)
 static void what_free_air_alone_shows_is_seen_in_the_air(void **state)
 {
     (void)state;
-    const struct dig_tracing         t     = search(DIG_EFFECT_LAYERING, 0.0);
+    const struct dig_trace_work      t     = search(DIG_EFFECT_LAYERING, 0.0);
     const struct dig_machine_finding air   = { .significant = true,
                                                .unexplained = true,
                                                .p_complete  = 1e-5 };
     struct dig_trace                 trace = { 0 };
     assert_false(found.significant);
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_int_equal(trace.seen_in[0], DIG_PART_AIR);
@@ -105,11 +115,11 @@ static void what_has_no_name_is_weighed(void **state)
     const struct dig_machine_finding strange = { .significant = true,
                                                  .unexplained = true,
                                                  .p_complete  = 1e-5 };
-    struct dig_tracing               t       = search(DIG_EFFECT_UNLISTED, 1.2);
+    struct dig_trace_work            t       = search(DIG_EFFECT_UNLISTED, 1.2);
     struct dig_trace                 trace   = { 0 };
     assert_close(found.unnamed, 1.0, 0.0);
     found.unnamed = 0.6;
-    assert_int_equal(dig_trace_fill_verdict(&t, &told, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &told, &trace), DIG_OK);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_close(trace.effect[0].probability, 0.6 * (1.0 - found.p_complete), 1e-12);
     free(trace.unlisted);
@@ -117,7 +127,7 @@ static void what_has_no_name_is_weighed(void **state)
     t             = search(DIG_EFFECT_LAYERING, 0.0);
     trace         = (struct dig_trace){ 0 };
     found.unnamed = 0.6;
-    assert_int_equal(dig_trace_fill_verdict(&t, &strange, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &strange, &trace), DIG_OK);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_close(trace.effect[0].probability, 0.6 * (1.0 - 1e-5), 1e-12);
     free(trace.unlisted);
@@ -129,18 +139,18 @@ static void without_free_air_no_more_than_even_odds_are_claimed(void **state)
     (void)state;
     const struct dig_machine_finding told  = { .p_complete = 1.0 };
     const struct dig_machine_finding none  = { .p_complete = 1.0, .no_air = true };
-    struct dig_tracing               t     = search(DIG_EFFECT_LAYERING, 0.8);
+    struct dig_trace_work            t     = search(DIG_EFFECT_LAYERING, 0.8);
     struct dig_trace                 with  = { 0 };
     struct dig_trace                 trace = { 0 };
-    assert_int_equal(dig_trace_fill_verdict(&t, &told, &with), DIG_OK);
-    assert_int_equal(dig_trace_fill_verdict(&t, &none, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &told, &with), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &none, &trace), DIG_OK);
     assert_true(with.effect[0].probability > 0.9);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LAYERING);
     assert_close(trace.effect[0].probability, 0.5, 0.0);
 
     t     = search(DIG_EFFECT_UNLISTED, 1.2);
     trace = (struct dig_trace){ 0 };
-    assert_int_equal(dig_trace_fill_verdict(&t, &none, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &none, &trace), DIG_OK);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_close(trace.effect[0].probability, 0.5, 0.0);
     free(trace.unlisted);
@@ -149,7 +159,7 @@ static void without_free_air_no_more_than_even_odds_are_claimed(void **state)
 static void what_has_no_name_is_seen_where_the_residual_is_largest(void **state)
 {
     (void)state;
-    const struct dig_tracing         t   = search(DIG_EFFECT_UNLISTED, 1.2);
+    const struct dig_trace_work      t   = search(DIG_EFFECT_UNLISTED, 1.2);
     const struct dig_machine_finding air = { .p_complete = 1.0 };
     const double                     gap = (double)NAN;
     const struct {
@@ -160,7 +170,7 @@ static void what_has_no_name_is_seen_where_the_residual_is_largest(void **state)
                   { 2.0, gap, DIG_PART_SOIL } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct dig_trace trace = { .residual = { gap, cases[i].soil, cases[i].lifted } };
-        assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+        assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
         assert_int_equal(trace.seen_in[0], cases[i].seen_in);
         free(trace.unlisted);
     }
@@ -169,7 +179,7 @@ static void what_has_no_name_is_seen_where_the_residual_is_largest(void **state)
 static void both_sides_are_named_the_machine_first(void **state)
 {
     (void)state;
-    const struct dig_tracing         t   = search(DIG_EFFECT_LAYERING, 0.8);
+    const struct dig_trace_work      t   = search(DIG_EFFECT_LAYERING, 0.8);
     const struct dig_machine_finding air = {
         .significant = true,
         .effects     = 1,
@@ -178,7 +188,7 @@ static void both_sides_are_named_the_machine_first(void **state)
         .set         = { { 2, { DIG_EFFECT_BUCKET_WEIGHT, DIG_EFFECT_PAYLOAD } } },
     };
     struct dig_trace trace = { 0 };
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
     assert_int_equal(trace.effects, 2);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_BUCKET_WEIGHT);
     assert_int_equal(trace.seen_in[0], DIG_PART_AIR);
@@ -193,7 +203,7 @@ static void both_sides_are_named_the_machine_first(void **state)
 static void a_machine_that_the_digs_show_is_seen_in_the_soil(void **state)
 {
     (void)state;
-    const struct dig_tracing         t   = search(DIG_EFFECT_LAYERING, 0.0);
+    const struct dig_trace_work      t   = search(DIG_EFFECT_LAYERING, 0.0);
     const struct dig_machine_finding air = {
         .significant = true,
         .effects     = 1,
@@ -201,7 +211,7 @@ static void a_machine_that_the_digs_show_is_seen_in_the_soil(void **state)
         .by_digs     = true,
     };
     struct dig_trace trace = { 0 };
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LINKAGE_GEOMETRY);
     assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
@@ -210,14 +220,16 @@ static void a_machine_that_the_digs_show_is_seen_in_the_soil(void **state)
 static void a_strange_machine_leaves_the_soil_without_a_name(void **state)
 {
     (void)state;
-    const struct dig_tracing         t     = search(DIG_EFFECT_LAYERING, 0.8);
+    struct dig_trace_work            t     = search(DIG_EFFECT_LAYERING, 0.8);
     const struct dig_machine_finding air   = { .significant = true, .unexplained = true };
     const struct dig_machine_finding known = { .significant = true };
     struct dig_trace                 trace = { 0 };
-    dig_trace_doubt_soil(&known, &found);
+    shown                                  = known;
+    dig_trace_doubt_soil(&t);
     assert_false(found.unlisted);
-    dig_trace_doubt_soil(&air, &found);
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    shown = air;
+    dig_trace_doubt_soil(&t);
+    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_int_equal(trace.sets, 0);
@@ -229,12 +241,12 @@ static void a_strange_machine_leaves_the_soil_without_a_name(void **state)
 static void a_rock_elsewhere_is_an_obstacle_without_a_template(void **state)
 {
     (void)state;
-    const struct dig_tracing         t     = search(DIG_EFFECT_UNLISTED, 1.2);
+    const struct dig_trace_work      t     = search(DIG_EFFECT_UNLISTED, 1.2);
     const struct dig_machine_finding air   = { .p_complete = 1.0 };
     struct dig_trace                 trace = { 0 };
     found.is_rock                          = true;
     found.rock = (struct dig_rock){ .ahead_m = 0.03, .low_m = 0.02, .high_m = 0.05 };
-    assert_int_equal(dig_trace_fill_verdict(&t, &air, &trace), DIG_OK);
+    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_OBSTACLE);
     assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
