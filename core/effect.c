@@ -30,6 +30,16 @@ int dig_effect_find(const char *const name)
     return -1;
 }
 
+size_t dig_effect_place(const size_t n, const enum dig_effect_id list[],
+                        const enum dig_effect_id effect)
+{
+    size_t place = 0;
+    while (place < n && list[place] != effect) {
+        place++;
+    }
+    return place;
+}
+
 bool dig_effect_is_of_machine(const enum dig_effect_id effect)
 {
     return (int)effect < DIG_MACHINE_EFFECTS;

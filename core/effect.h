@@ -52,6 +52,9 @@ const char *dig_effect_name(enum dig_effect_id effect);
 /// The effect of that name, or -1.
 int dig_effect_find(const char *name);
 
+/// Its place among the first n of a list; n where it is not among them.
+size_t dig_effect_place(size_t n, const enum dig_effect_id list[], enum dig_effect_id effect);
+
 /// True for the effects of the machine.
 bool dig_effect_is_of_machine(enum dig_effect_id effect);
 

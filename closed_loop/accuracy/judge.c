@@ -112,13 +112,6 @@ static void join(struct dig_score *const sum, const struct dig_score *const one)
     sum->whole_N2m2s += one->whole_N2m2s;
 }
 
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, const size_t digs,
                                        const struct dig_measured     measured[],
                                        const struct dig_trace_curves curves[], const bool take[],
@@ -148,9 +141,7 @@ struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, co
             }
             drawn[d] = dig_score_error(&sum);
         }
-        qsort(drawn, DRAWS, sizeof drawn[0], ascending);
-        range.low  = drawn[DRAWS / 20];
-        range.high = drawn[DRAWS - 1 - DRAWS / 20];
+        dig_chance_interval(DRAWS, drawn, &range.low, &range.high);
     }
     return range;
 }

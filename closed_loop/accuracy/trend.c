@@ -34,13 +34,6 @@ static double slope_of(const struct sums *const s, const double range2)
     return within > 1e-9 * range2 * s->n ? (s->xy - s->x * s->y / s->n) / within : (double)NAN;
 }
 
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void bootstrap(const size_t digs, const struct sums one[], const double range2,
                       uint64_t seed, struct dig_trend *const trend)
 {
@@ -61,10 +54,8 @@ static void bootstrap(const size_t digs, const struct sums one[], const double r
         }
     }
     if (n > DRAWS / 2) {
-        qsort(drawn, n, sizeof drawn[0], ascending);
-        trend->low  = drawn[n / 20];
-        trend->high = drawn[n - 1 - n / 20];
-        trend->p    = fmin(1.0, 2.0 * (fmin(below, above) + 1.0) / ((double)n + 1.0));
+        dig_chance_interval(n, drawn, &trend->low, &trend->high);
+        trend->p = fmin(1.0, 2.0 * (fmin(below, above) + 1.0) / ((double)n + 1.0));
     }
 }
 

@@ -107,11 +107,20 @@ double dig_forward_added(const struct dig_whitened_digs *const batch, const size
 
 void dig_hypothesis_features(const struct dig_soil *const       soil,
                              const struct dig_hypothesis *const hypothesis, const double number[],
-                             const struct dig_measured *const dig, double feature[DIG_FEATURES],
-                             double *const noise)
+                             const struct dig_measured *const dig, double feature[DIG_FEATURES])
 {
     const struct dig_plain plain = dig_plain_of(soil, (size_t)dig->trajectory, number);
-    dig_forward_add(soil, &plain, hypothesis, number, dig, feature, noise);
+    dig_forward_add(soil, &plain, hypothesis, number, dig, feature, NULL);
+}
+
+void dig_hypothesis_whitened(const struct dig_soil *const       soil,
+                             const struct dig_hypothesis *const hypothesis, const double number[],
+                             const struct dig_whitened_digs_group *const group,
+                             const struct dig_measured *const dig, double y[DIG_FEATURES])
+{
+    double feature[DIG_FEATURES];
+    dig_hypothesis_features(soil, hypothesis, number, dig, feature);
+    dig_whitened_digs_whiten(group, feature, y);
 }
 
 void dig_hypothesis_curve(const struct dig_soil *const       soil,

@@ -55,10 +55,15 @@ double dig_forward_added(const struct dig_whitened_digs *batch, size_t group,
                          const struct dig_hypothesis *hypothesis, const double number[],
                          double added[DIG_FEATURES]);
 
-/// The same as dig_forward_add() from the gravel on.
+/// The same features from the gravel on.
 void dig_hypothesis_features(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
                              const double number[], const struct dig_measured *dig,
-                             double feature[DIG_FEATURES], double *noise);
+                             double feature[DIG_FEATURES]);
+
+/// y of them in a group of digs.
+void dig_hypothesis_whitened(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
+                             const double number[], const struct dig_whitened_digs_group *group,
+                             const struct dig_measured *dig, double y[DIG_FEATURES]);
 
 /// The whole curve.
 void dig_hypothesis_curve(const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,

@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
 static uint64_t next(uint64_t *const state)
 {
@@ -30,6 +31,21 @@ size_t dig_chance_index(uint64_t *const state, const size_t n)
 {
     assert(n > 0);
     return (size_t)(next(state) % n);
+}
+
+static int ascending(const void *const a, const void *const b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void dig_chance_interval(const size_t n, double drawn[], double *const low, double *const high)
+{
+    assert(n > 0 && drawn != NULL && low != NULL && high != NULL);
+    qsort(drawn, n, sizeof drawn[0], ascending);
+    *low  = drawn[n / 20];
+    *high = drawn[n - 1 - n / 20];
 }
 
 enum { TERMS_MAX = 1000 };

@@ -22,13 +22,10 @@ static double miss2(const struct dig_whitened_digs *const batch,
     const struct dig_whitened_digs_dig *const   left  = &batch->dig[dig];
     const struct dig_whitened_digs_group *const group = &batch->group[left->group];
     struct dig_fitted                           fitted;
-    double                                      feature[DIG_FEATURES];
     double                                      y[DIG_FEATURES];
-    double                                      ignored;
     dig_hypothesis_fit(others, soil, &from->hypothesis, from->number, DIG_FIT_BARE, &fitted);
-    dig_hypothesis_features(soil, &fitted.hypothesis, fitted.number,
-                            &batch->measured[left->measured], feature, &ignored);
-    dig_whitened_digs_whiten(group, feature, y);
+    dig_hypothesis_whitened(soil, &fitted.hypothesis, fitted.number, group,
+                            &batch->measured[left->measured], y);
     dig_steps_add(batch, fitted.z, left->group, y);
     double sum = 0.0;
     for (size_t k = 0; k < group->features; k++) {

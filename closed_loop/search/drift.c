@@ -24,15 +24,6 @@ struct sizes {
     double shared[DIG_TRAJECTORY_MAX]; // variance of what a trajectory's digs have in common
 };
 
-static int place_of_wear(const struct dig_hypothesis *const hypothesis)
-{
-    int place = -1;
-    for (size_t e = 0; e < hypothesis->effects; e++) {
-        place = hypothesis->effect[e] == DIG_EFFECT_WEAR ? (int)e : place;
-    }
-    return place;
-}
-
 // A dig's size over that of its group's mean dig, whose scatter is 1: a larger one scatters more.
 static double worn(const struct dig_whitened_digs *const batch, const double share,
                    const struct dig_whitened_digs_dig *const dig)
@@ -60,14 +51,11 @@ static void measure(const struct dig_whitened_digs *const batch, const struct di
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
         const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
-        double                                      feature[DIG_FEATURES];
         double                                      model[DIG_FEATURES];
-        double                                      noise;
         double                                      both = 0.0;
         double                                      own  = 0.0;
-        dig_hypothesis_features(soil, &fitted->hypothesis, fresh, &batch->measured[dig->measured],
-                                feature, &noise);
-        dig_whitened_digs_whiten(group, feature, model);
+        dig_hypothesis_whitened(soil, &fitted->hypothesis, fresh, group,
+                                &batch->measured[dig->measured], model);
         for (size_t k = 0; k < group->features; k++) {
             both += dig->y[k] * model[k];
             own += model[k] * model[k];
@@ -126,11 +114,12 @@ double dig_drift_bend(const struct dig_whitened_digs *const batch,
                       const struct dig_soil *const soil, const struct dig_fitted *const fitted)
 {
     assert(batch != NULL && soil != NULL && fitted != NULL);
-    const int    wear  = place_of_wear(&fitted->hypothesis);
+    const struct dig_hypothesis *const by = &fitted->hypothesis;
+    const size_t wear  = dig_effect_place(by->effects, by->effect, DIG_EFFECT_WEAR);
     struct sizes sizes = { .digs = 0 };
-    if (wear < 0 || batch->digs < least_digs) {
+    if (wear == by->effects || batch->digs < least_digs) {
         return 0.0;
     }
-    measure(batch, soil, fitted, (size_t)wear, &sizes);
+    measure(batch, soil, fitted, wear, &sizes);
     return bend(&sizes, batch->groups);
 }

@@ -154,13 +154,10 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
     }
     for (size_t i = 0; i < batch->digs; i++) {
         const size_t g = batch->dig[i].group;
-        double       feature[DIG_FEATURES];
         double       model[DIG_FEATURES];
         double       own[DIG_FEATURES];
-        double       noise;
-        dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
-                                &batch->measured[batch->dig[i].measured], feature, &noise);
-        dig_whitened_digs_whiten(&batch->group[g], feature, model);
+        dig_hypothesis_whitened(soil, &fitted->hypothesis, fitted->number, &batch->group[g],
+                                &batch->measured[batch->dig[i].measured], model);
         draw_scatter(batch, g, seed, own);
         for (size_t k = 0; k < batch->group[g].features; k++) {
             drawn->dig[i].y[k] = model[k] + common[g][k] + size[g] * own[k];

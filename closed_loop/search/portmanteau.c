@@ -36,13 +36,10 @@ static double all_digs(const struct dig_whitened_digs *const batch,
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
         const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
-        double                                      feature[DIG_FEATURES];
         double                                      model[DIG_FEATURES];
         double                                      z[DIG_FEATURES];
-        double                                      noise;
-        dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
-                                &batch->measured[dig->measured], feature, &noise);
-        dig_whitened_digs_whiten(group, feature, model);
+        dig_hypothesis_whitened(soil, &fitted->hypothesis, fitted->number, group,
+                                &batch->measured[dig->measured], model);
         q[i]         = 0.0;
         size_t first = 0;
         for (size_t k = 0; k < group->features; k++) {
@@ -58,13 +55,6 @@ static double all_digs(const struct dig_whitened_digs *const batch,
     return mean;
 }
 
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void draw_digs(const size_t digs, const double q[], uint64_t *const seed,
                       struct dig_whiteness *const whiteness)
 {
@@ -75,9 +65,7 @@ static void draw_digs(const size_t digs, const double q[], uint64_t *const seed,
             drawn[b] += q[dig_chance_index(seed, digs)] / (double)digs;
         }
     }
-    qsort(drawn, BOOTSTRAPS, sizeof drawn[0], ascending);
-    whiteness->low  = drawn[BOOTSTRAPS / 20];
-    whiteness->high = drawn[BOOTSTRAPS - 1 - BOOTSTRAPS / 20];
+    dig_chance_interval(BOOTSTRAPS, drawn, &whiteness->low, &whiteness->high);
 }
 
 enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *const batch,

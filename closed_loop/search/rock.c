@@ -126,11 +126,8 @@ static void take_off(struct room *const r, const struct place *const p, const do
 static void model_of(const struct room *const r, const struct dig_fitted *const fitted,
                      const size_t g, double y[DIG_FEATURES])
 {
-    double feature[DIG_FEATURES];
-    double noise;
-    dig_hypothesis_features(r->soil, &fitted->hypothesis, fitted->number,
-                            dig_whitened_digs_first(r->batch, g), feature, &noise);
-    dig_whitened_digs_whiten(&r->batch->group[g], feature, y);
+    dig_hypothesis_whitened(r->soil, &fitted->hypothesis, fitted->number, &r->batch->group[g],
+                            dig_whitened_digs_first(r->batch, g), y);
 }
 
 // The factors that leave least of the means beside the fitted gravel.

@@ -113,8 +113,8 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
     free(drawn);
     c->s->significant = c->s->p_complete < c->false_alarm;
     for (size_t i = 0; i < c->s->rivals; i++) {
-        c->s->rival_fit[i] =
-            dig_null_simulation_p(&c->plain_null, 0, dig_search_left(c, &c->s->rival[i]));
+        const double left  = dig_null_simulation_left(c->batch, c->soil, &c->s->rival[i]);
+        c->s->rival_fit[i] = dig_null_simulation_p(&c->plain_null, 0, left);
     }
     return status;
 }

@@ -31,15 +31,12 @@ void dig_search_find_set(struct dig_search_work *const c)
     struct dig_candidate_set *const set = &c->s->set[0];
     set->effects                        = 0;
     set->effect[set->effects++]         = c->s->chosen.hypothesis.effect[0];
-    bool taken[DIG_RIVALS_MAX]          = { false };
+    bool taken[DIG_RIVALS_MAX];
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        taken[i] = !is_near_chosen(c, i);
+    }
     for (size_t turn = 0; turn < 2; turn++) {
-        size_t next = c->s->rivals;
-        for (size_t i = 0; i < c->s->rivals; i++) {
-            if (is_near_chosen(c, i) && !taken[i] &&
-                (next == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[next])) {
-                next = i;
-            }
-        }
+        const size_t next = dig_search_best_rival(c->s, taken);
         if (next < c->s->rivals) {
             taken[next]                 = true;
             set->effect[set->effects++] = c->single[next].effect[0];

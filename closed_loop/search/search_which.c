@@ -44,14 +44,8 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
     bool   any                   = false;
     double best                  = INFINITY;
     for (size_t p = 0; p < PARTNERS && p < c->s->rivals; p++) {
-        size_t first = c->s->rivals;
-        for (size_t i = 0; i < c->s->rivals; i++) {
-            if (!tried[i] &&
-                (first == c->s->rivals || c->s->log_evidence[i] > c->s->log_evidence[first])) {
-                first = i;
-            }
-        }
-        tried[first] = true;
+        const size_t first = dig_search_best_rival(c->s, tried);
+        tried[first]       = true;
         struct dig_hypothesis added[DIG_RIVALS_MAX];
         struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
         struct dig_statistic  statistic;
@@ -185,7 +179,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
         give_up(c);
         return DIG_OK;
     }
-    const size_t best = dig_search_best_rival(c->s);
+    const size_t best = dig_search_best_rival(c->s, NULL);
     c->s->chosen      = c->s->rival[best];
     struct dig_fitted pair;
     if (find_pair(c, &pair)) {

@@ -20,18 +20,21 @@ struct dig_search_work {
     struct dig_search         *s;
 };
 
+/// Log evidence that so many fitted numbers cost.
+double dig_search_penalty(const struct dig_whitened_digs *batch, size_t numbers);
+
 /// Log evidence of a fit beside that of the plain hypothesis. more: numbers that were fitted beside
 /// the gravel's and those of its effects.
 double dig_search_evidence(const struct dig_search_work *c, const struct dig_fitted *fitted,
                            size_t more);
 
-/// What a fit leaves of the digs' means.
-double dig_search_left(const struct dig_search_work *c, const struct dig_fitted *fitted);
-
 bool dig_search_holds(const struct dig_hypothesis *hypothesis, enum dig_effect_id effect);
 
-/// The single effect of the most evidence; that evidence, or 0 when none has any.
-size_t dig_search_best_rival(const struct dig_search *s);
+/// The single effect of the most evidence among those not taken (NULL: of all); the number of
+/// rivals where none is left.
+size_t dig_search_best_rival(const struct dig_search *s, const bool taken[]);
+
+/// The most evidence of a single effect, or 0 when none has any.
 double dig_search_best_evidence(const struct dig_search *s);
 
 /// Chooses one effect, two, or none that has a name: s->chosen, s->unlisted.

@@ -41,13 +41,10 @@ static double credible(const struct dig_whitened_digs *const batch,
                        const size_t g)
 {
     const struct dig_whitened_digs_group *const group = &batch->group[g];
-    double                                      feature[DIG_FEATURES];
     double                                      model[DIG_FEATURES];
-    double                                      noise;
     double                                      squares = 0.0;
-    dig_hypothesis_features(soil, &fitted->hypothesis, fitted->number,
-                            dig_whitened_digs_first(batch, g), feature, &noise);
-    dig_whitened_digs_whiten(group, feature, model);
+    dig_hypothesis_whitened(soil, &fitted->hypothesis, fitted->number, group,
+                            dig_whitened_digs_first(batch, g), model);
     for (size_t k = 0; k < group->features; k++) {
         squares += pow(group->mean[k] - model[k], 2.0);
     }

@@ -52,11 +52,10 @@ static void fill_gravel(const struct dig_whitened_digs *const batch,
     for (size_t a = 0; a < DIG_AXES; a++) {
         double moved[DIG_HYPOTHESIS_NUMBERS];
         double feature[DIG_FEATURES];
-        double noise;
         memcpy(moved, plain->number, sizeof moved);
         moved[a] += soil->surface->set->axis_count[a] > 1 ? step : 0.0;
         dig_hypothesis_features(soil, &plain->hypothesis, moved, dig_whitened_digs_first(batch, g),
-                                feature, &noise);
+                                feature);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             feature[f] = (feature[f] - model[f]) / step;
         }
@@ -87,9 +86,8 @@ static void fill_mean(const struct dig_whitened_digs *const batch,
     const struct dig_whitened_digs_group *const group  = &batch->group[g];
     const double                                weight = weight_of(batch, plain, g);
     double                                      model[DIG_FEATURES];
-    double                                      noise;
     dig_hypothesis_features(soil, &plain->hypothesis, plain->number,
-                            dig_whitened_digs_first(batch, g), model, &noise);
+                            dig_whitened_digs_first(batch, g), model);
     put_rows(group, model, weight, r->y + r->rows);
     for (size_t k = 0; k < group->features; k++) {
         r->y[r->rows + k] = weight * group->mean[k] - r->y[r->rows + k];

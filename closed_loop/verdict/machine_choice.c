@@ -74,10 +74,6 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
     const size_t                       rivals = dig_search_rivals(batch, soil, single);
     dig_null_simulation_fit(batch, soil, &none, rivals, single, middle, DIG_FIT_THOROUGH, fitted,
                             &statistic);
-    double features = 0.0;
-    for (size_t g = 0; g < batch->groups; g++) {
-        features += (double)batch->group[g].features;
-    }
     *best         = fitted[0];
     double misfit = fitted[0].misfit;
     dig_hypothesis_fit_unlisted(batch, soil, &fitted[0], &unnamed);
@@ -86,7 +82,7 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
         *best  = unnamed;
     }
     for (size_t i = 0; i < rivals; i++) {
-        const double penalty = (double)dig_hypothesis_free(&single[i]) * log(features);
+        const double penalty = 2.0 * dig_search_penalty(batch, dig_hypothesis_free(&single[i]));
         if (fitted[1 + i].misfit + penalty < misfit) {
             misfit = fitted[1 + i].misfit + penalty;
             *best  = fitted[1 + i];
@@ -146,15 +142,6 @@ static enum dig_status weigh(const struct dig_trace_work *const w, const size_t 
     return is_no_answer(status) ? DIG_OK : status;
 }
 
-static bool is_of(const struct dig_candidate_set *const set, const enum dig_effect_id effect)
-{
-    bool is = false;
-    for (size_t e = 0; e < set->effects; e++) {
-        is = is || set->effect[e] == effect;
-    }
-    return is;
-}
-
 // Single effects that free air and the digs cannot tell from the one chosen.
 static void write_set(const struct choice *const choice, struct dig_machine_finding *const air)
 {
@@ -162,9 +149,10 @@ static void write_set(const struct choice *const choice, struct dig_machine_find
     set->effects                        = 1;
     set->effect[0]                      = choice->best.effect[0].effect;
     for (size_t i = 0; i < air->answers; i++) {
+        const enum dig_effect_id effect = air->answer[i].effect[0].effect;
         if (air->answer[i].effects == 1 && choice->of[i] > choice->evidence - tie &&
-            !is_of(set, air->answer[i].effect[0].effect)) {
-            set->effect[set->effects++] = air->answer[i].effect[0].effect;
+            dig_effect_place(set->effects, set->effect, effect) == set->effects) {
+            set->effect[set->effects++] = effect;
         }
     }
     air->sets = set->effects > 1 ? 1 : 0;

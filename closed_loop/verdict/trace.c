@@ -253,11 +253,8 @@ static enum dig_status weigh_soil(struct dig_trace_work *const w)
 
 static bool is_in_set(const struct dig_search *const s, const enum dig_effect_id effect)
 {
-    bool is = false;
-    for (size_t e = 0; s->sets > 0 && e < s->set[0].effects; e++) {
-        is = is || s->set[0].effect[e] == effect;
-    }
-    return is;
+    const struct dig_candidate_set *const set = &s->set[0];
+    return s->sets > 0 && dig_effect_place(set->effects, set->effect, effect) < set->effects;
 }
 
 // How well what was found is known (covariance: of what is open of the machine), and what cannot be

@@ -2,6 +2,7 @@
 
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/recordings/regressors.h"
+#include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/tell_apart.h"
 #include "estimator/effects/effect.h"
 
@@ -95,9 +96,8 @@ enum dig_part dig_trace_seen_in(const struct dig_trace_work *const w,
         const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
         double                           with[DIG_FEATURES];
         double                           plain[DIG_FEATURES];
-        double                           noise;
-        dig_hypothesis_features(w->soil, &fitted->hypothesis, fitted->number, dig, with, &noise);
-        dig_hypothesis_features(w->soil, &fitted->hypothesis, without, dig, plain, &noise);
+        dig_hypothesis_features(w->soil, &fitted->hypothesis, fitted->number, dig, with);
+        dig_hypothesis_features(w->soil, &fitted->hypothesis, without, dig, plain);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             with[f] -= plain[f];
         }
@@ -115,9 +115,8 @@ void dig_trace_fill_residuals(const struct dig_trace_work *const w,
         const struct dig_whitened_digs_group *const group = &w->batch->group[g];
         double                                      model[DIG_FEATURES];
         double                                      mean[DIG_FEATURES] = { 0.0 };
-        double                                      noise;
         dig_hypothesis_features(w->soil, &w->search->plain.hypothesis, w->search->plain.number,
-                                dig_whitened_digs_first(w->batch, g), model, &noise);
+                                dig_whitened_digs_first(w->batch, g), model);
         for (size_t i = 0; i < w->batch->digs; i++) {
             if (w->batch->dig[i].group != g) {
                 continue;
@@ -254,12 +253,7 @@ void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_
     }
     for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
          turn++) {
-        size_t next = s->rivals;
-        for (size_t i = 0; i < s->rivals; i++) {
-            if (!taken[i] && (next == s->rivals || s->log_evidence[i] > s->log_evidence[next])) {
-                next = i;
-            }
-        }
+        const size_t next                   = dig_search_best_rival(s, taken);
         taken[next]                         = true;
         const struct dig_fitted *const f    = &s->rival[next];
         const struct dig_model_effect  made = dig_trace_effect(w->soil, f, 0, 0.0);

@@ -124,9 +124,7 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
         double                                      mean[DIG_FEATURES] = { 0.0 };
         for (size_t i = 0; i < b->digs; i++) {
             double feature[DIG_FEATURES];
-            double noise;
-            dig_hypothesis_features(soil, &f->hypothesis, f->number, &b->measured[i], feature,
-                                    &noise);
+            dig_hypothesis_features(soil, &f->hypothesis, f->number, &b->measured[i], feature);
             dig_whitened_digs_whiten(group, feature, model[i]);
             for (size_t k = 0; b->dig[i].group == g && k < group->features; k++) {
                 mean[k] += model[i][k] / (double)group->digs;

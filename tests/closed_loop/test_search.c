@@ -304,14 +304,14 @@ static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
     assert_int_equal(dig_null_simulation_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS,
                                               NULL, &c.seed, &c.plain_null),
                      DIG_OK);
-    const size_t best   = dig_search_best_rival(&s);
+    const size_t best   = dig_search_best_rival(&s, NULL);
     const double before = s.log_evidence[best];
     assert_int_equal(s.rival[best].hypothesis.effect[0], slope);
     const double short_of = 30.0; // of the misfit
     s.rival[best].misfit += short_of;
     s.rival[best].number[DIG_AT_U(0)] *= 0.8;
     s.log_evidence[best] = dig_search_evidence(&c, &s.rival[best], 1);
-    assert_int_equal(dig_search_best_rival(&s), best);
+    assert_int_equal(dig_search_best_rival(&s, NULL), best);
     assert_true(s.log_evidence[best] < before - 2.0 * DIG_SEARCH_TOLD_APART);
     assert_int_equal(dig_search_which(&c), DIG_OK);
     assert_close(s.log_evidence[best], before, 1.0);
