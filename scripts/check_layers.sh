@@ -60,8 +60,8 @@ closed_loop/machine    machine_check machine_side | machine_lines machine_motion
 closed_loop/search     | cross_validation portmanteau search search_work unlisted
 closed_loop/accuracy   coverage score | before_after decision effect_size judge trend
 closed_loop/verdict    trace | residuals tell_apart
-closed_loop/design     design design_report
-closed_loop/report     html json machine_check_report plot report trace_report
+closed_loop/design     design
+closed_loop/report     design_report html json machine_check_report plot report trace_report
 firmware_host/threads  | handoff log_limit notify rt
 firmware_host/bus      | frame_watch input reading register_plan signal_map stuck
 firmware_host/config   load_model | config describe load

@@ -1,6 +1,7 @@
 #include "closed_loop/accuracy/decision.h"
 
 #include "closed_loop/accuracy/judge.h"
+#include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/features.h"
 
 #include <assert.h>
@@ -10,19 +11,6 @@
 struct products {
     double change, scatter;
 };
-
-// Rig time that a point of the grid stands for.
-static double time_of_s(const struct dig_curve_set *const set, const size_t trajectory,
-                        const size_t point)
-{
-    const struct dig_trajectory *const t    = &set->trajectory[trajectory];
-    const double                       last = DIG_CURVE_POINTS - 1;
-    const double                       from = fmax((double)point - 0.5, 0.0) / last;
-    const double                       to   = fmin((double)point + 0.5, last) / last;
-    return fmax(dig_trajectory_time_s(t, set->tooth_m, to) -
-                    dig_trajectory_time_s(t, set->tooth_m, from),
-                0.0);
-}
 
 // How two bins of the moment move together.
 static double correlation(const double covariance[DIG_FEATURES][DIG_FEATURES], const size_t a,
@@ -49,7 +37,7 @@ static struct products products_of(const struct dig_curve_set *const    set,
         for (size_t k = from; k < to; k++) {
             const double at     = (double)k / (DIG_CURVE_POINTS - 1);
             const bool   dug    = at >= dig->first && at <= dig->last;
-            const double time_s = dug ? time_of_s(set, t, k) : 0.0;
+            const double time_s = dug ? dig_score_time_s(set, t, k) : 0.0;
             const double change =
                 curves->after[DIG_CHANNEL_MY_Nm][k] - curves->before[DIG_CHANNEL_MY_Nm][k];
             of.change += time_s * change * change;

@@ -1,6 +1,7 @@
 #include "closed_loop/accuracy/judge.h"
 
 #include "closed_loop/accuracy/score.h"
+#include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/chance.h"
 #include "closed_loop/recordings/features.h"
 
@@ -40,8 +41,7 @@ void dig_judge_sd(const struct dig_response_surface *const surface,
     double                            feature[DIG_FEATURES];
     double                            size[DIG_FORCE_CHANNELS];
     dig_response_surface_features(surface, trajectory, place, feature, size);
-    const struct dig_gravel gravel = dig_response_surface_gravel(surface, place);
-    const double strength = log(size[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    const double strength = dig_soil_strength(surface, place, size);
     const double factor   = dig_scatter_factor(scatter, trajectory, strength) * (1.0 + noise);
 
     double(*const amplitude)[DIG_FORCE_CHANNELS] = calloc(set->entries, sizeof *amplitude);
@@ -78,38 +78,35 @@ void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS
     }
 }
 
-// Adds one dig's moment to a score.
-static void add(const struct dig_curve_set *const set, const struct dig_measured *const dig,
-                const struct dig_trace_curves *const curves, const bool after,
-                struct dig_score *const score)
-{
-    const double(*const predicted)[DIG_CURVE_POINTS] = after ? curves->after : curves->before;
-    const double(*const sigma)[DIG_CURVE_POINTS]     = after ? curves->after_sd : curves->before_sd;
-    dig_score_add(score, &set->trajectory[dig->trajectory], set->tooth_m, dig->first, dig->last,
-                  dig->value[DIG_CHANNEL_MY_Nm], predicted[DIG_CHANNEL_MY_Nm],
-                  sigma[DIG_CHANNEL_MY_Nm]);
-}
-
-static size_t score_each(const struct dig_curve_set *const set, const size_t digs,
-                         const struct dig_measured     measured[],
-                         const struct dig_trace_curves curves[], const bool take[],
-                         const bool after, struct dig_score one[DIG_MEASURED_MAX])
-{
-    size_t n = 0;
-    for (size_t i = 0; i < digs; i++) {
-        if (take[i]) {
-            one[n] = (struct dig_score){ 0 };
-            add(set, &measured[i], &curves[i], after, &one[n++]);
-        }
-    }
-    return n;
-}
-
 static void join(struct dig_score *const sum, const struct dig_score *const one)
 {
     sum->wrong_N2m2s += one->wrong_N2m2s;
     sum->floor_N2m2s += one->floor_N2m2s;
     sum->whole_N2m2s += one->whole_N2m2s;
+}
+
+// Scores of the moment of the digs taken, one by one and all together; how many.
+static size_t score_each(const struct dig_curve_set *const set, const size_t digs,
+                         const struct dig_measured     measured[],
+                         const struct dig_trace_curves curves[], const bool take[],
+                         const bool after, struct dig_score one[DIG_MEASURED_MAX],
+                         struct dig_score *const all)
+{
+    size_t n = 0;
+    *all     = (struct dig_score){ 0 };
+    for (size_t i = 0; i < digs; i++) {
+        const struct dig_measured *const     dig = &measured[i];
+        const struct dig_trace_curves *const c   = &curves[i];
+        if (take[i]) {
+            one[n] = (struct dig_score){ 0 };
+            dig_score_add(&one[n], &set->trajectory[dig->trajectory], set->tooth_m, dig->first,
+                          dig->last, dig->value[DIG_CHANNEL_MY_Nm],
+                          (after ? c->after : c->before)[DIG_CHANNEL_MY_Nm],
+                          (after ? c->after_sd : c->before_sd)[DIG_CHANNEL_MY_Nm]);
+            join(all, &one[n++]);
+        }
+    }
+    return n;
 }
 
 struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, const size_t digs,
@@ -119,12 +116,9 @@ struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, co
 {
     assert(digs <= DIG_MEASURED_MAX);
     struct dig_score       one[DIG_MEASURED_MAX];
-    struct dig_score       all   = { 0 };
-    const size_t           n     = score_each(set, digs, measured, curves, take, after, one);
+    struct dig_score       all;
+    const size_t           n     = score_each(set, digs, measured, curves, take, after, one, &all);
     struct dig_error_range range = { (double)NAN, (double)NAN, (double)NAN };
-    for (size_t i = 0; i < n; i++) {
-        join(&all, &one[i]);
-    }
     if (n == 0) {
         return range;
     }
@@ -151,10 +145,7 @@ double dig_judge_floor(const struct dig_curve_set *const set, const size_t digs,
                        const bool take[])
 {
     struct dig_score one[DIG_MEASURED_MAX];
-    struct dig_score all = { 0 };
-    const size_t     n   = score_each(set, digs, measured, curves, take, true, one);
-    for (size_t i = 0; i < n; i++) {
-        join(&all, &one[i]);
-    }
+    struct dig_score all;
+    const size_t     n = score_each(set, digs, measured, curves, take, true, one, &all);
     return n > 0 ? dig_score_noise_floor(&all) : (double)NAN;
 }

@@ -40,6 +40,17 @@ void dig_score_add(struct dig_score *const score, const struct dig_trajectory *c
     }
 }
 
+double dig_score_time_s(const struct dig_curve_set *const set, const size_t trajectory,
+                        const size_t point)
+{
+    const struct dig_trajectory *const t    = &set->trajectory[trajectory];
+    const double                       last = DIG_CURVE_POINTS - 1;
+    const double                       from = fmax((double)point - 0.5, 0.0) / last;
+    const double                       to   = fmin((double)point + 0.5, last) / last;
+    return dig_trajectory_time_s(t, set->tooth_m, to) -
+           dig_trajectory_time_s(t, set->tooth_m, from);
+}
+
 double dig_score_error(const struct dig_score *const score)
 {
     return score->whole_N2m2s > 0.0 ? sqrt(score->wrong_N2m2s / score->whole_N2m2s) : (double)NAN;

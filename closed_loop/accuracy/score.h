@@ -26,6 +26,9 @@ void dig_score_add(struct dig_score *score, const struct dig_trajectory *traject
                    const double predicted_Nm[DIG_CURVE_POINTS],
                    const double sigma_Nm[DIG_CURVE_POINTS]);
 
+/// Rig time that a point of the progress grid stands for: half the way to either neighbour.
+double dig_score_time_s(const struct dig_curve_set *set, size_t trajectory, size_t point);
+
 /// The error defined above; NaN when nothing was added.
 double dig_score_error(const struct dig_score *score);
 

@@ -1,7 +1,7 @@
 #include "closed_loop/design/design.h"
 
-#include "closed_loop/design/design_simulate.h"
 #include "closed_loop/design/design_view.h"
+#include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
@@ -64,7 +64,7 @@ static enum dig_status weigh_gravel(const struct dig_response_surface *const sur
         }
     }
     for (size_t a = 0; a < DIG_AXES; a++) {
-        dig->sd[a] = dig_design_median(places, left[a]);
+        dig->sd[a] = dig_chance_median(places, left[a]);
     }
     return DIG_OK;
 }

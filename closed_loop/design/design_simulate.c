@@ -1,5 +1,6 @@
-#include "closed_loop/design/design_simulate.h"
+#include "closed_loop/design/design_view.h"
 
+#include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
 
@@ -11,13 +12,6 @@
 enum { N = DIG_FEATURE_BINS, STEPS_FRICTION = 11, STEPS_ROLLING = 11, STEPS_DENSITY = 7 };
 #define GRID ((size_t)STEPS_FRICTION * STEPS_ROLLING * STEPS_DENSITY)
 
-static double strength_of(const struct dig_response_surface *const surface,
-                          const double place[DIG_AXES], const double amplitude[DIG_FORCE_CHANNELS])
-{
-    const struct dig_gravel gravel = dig_response_surface_gravel(surface, place);
-    return log(amplitude[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
-}
-
 void dig_design_covariance(const struct dig_response_surface *const surface,
                            const struct dig_scatter *const scatter, const size_t trajectory,
                            const double place[DIG_AXES], const size_t n, double covariance[])
@@ -27,7 +21,7 @@ void dig_design_covariance(const struct dig_response_surface *const surface,
     double amplitude[DIG_FORCE_CHANNELS];
     dig_response_surface_features(surface, trajectory, place, feature, amplitude);
     const double factor =
-        dig_scatter_factor(scatter, trajectory, strength_of(surface, place, amplitude));
+        dig_scatter_factor(scatter, trajectory, dig_soil_strength(surface, place, amplitude));
     const double all = factor * (1.0 + dig_response_surface_noise(surface, trajectory, place));
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) {
@@ -83,7 +77,7 @@ static void draw_dig(const struct dig_response_surface *const surface,
     if (scatter->residuals[t] > 0) {
         const size_t i = dig_chance_index(seed, scatter->residuals[t]);
         const double factor =
-            dig_scatter_factor(scatter, t, strength_of(surface, place, amplitude));
+            dig_scatter_factor(scatter, t, dig_soil_strength(surface, place, amplitude));
         for (size_t k = 0; k < N; k++) {
             noise[k] = sqrt(factor) * amplitude[DIG_CHANNEL_MY_Nm] * scatter->residual[t][i][k];
         }

@@ -1,13 +1,20 @@
 #include "closed_loop/design/design_view.h"
 
-#include "closed_loop/design/design_simulate.h"
 #include "closed_loop/numeric/dense.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double step = 0.02; // of the derivatives, in places
+
+double dig_design_product(const size_t n, const double a[], const double b[])
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        sum += a[k] * b[k];
+    }
+    return sum;
+}
 
 enum dig_status dig_design_look(const struct dig_response_surface *const surface,
                                 const struct dig_scatter *const scatter, const size_t t,
@@ -35,10 +42,7 @@ enum dig_status dig_design_look(const struct dig_response_surface *const surface
     }
     for (size_t a = 0; a < DIG_AXES; a++) {
         for (size_t b = 0; b < DIG_AXES; b++) {
-            double sum = 0.0;
-            for (size_t k = 0; k < n; k++) {
-                sum += v->slope[a][k] * v->slope[b][k];
-            }
+            const double sum                  = dig_design_product(n, v->slope[a], v->slope[b]);
             v->normal[a * DIG_AXES + b]       = sum;
             v->normal_lower[a * DIG_AXES + b] = sum + (a == b ? DIG_DESIGN_PRIOR : 0.0);
         }
@@ -60,10 +64,7 @@ void dig_design_take_gravel_off(const struct dig_design_view *const v, double d[
 {
     double g[DIG_AXES];
     for (size_t a = 0; a < DIG_AXES; a++) {
-        g[a] = 0.0;
-        for (size_t k = 0; k < v->n; k++) {
-            g[a] += v->slope[a][k] * d[k];
-        }
+        g[a] = dig_design_product(v->n, v->slope[a], d);
     }
     dig_lower_solve(DIG_AXES, v->normal_lower, g);
     dig_lower_transposed_solve(DIG_AXES, v->normal_lower, g);
@@ -72,24 +73,4 @@ void dig_design_take_gravel_off(const struct dig_design_view *const v, double d[
             d[k] -= v->slope[a][k] * g[a];
         }
     }
-}
-
-double dig_design_product(const size_t n, const double a[], const double b[])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < n; k++) {
-        sum += a[k] * b[k];
-    }
-    return sum;
-}
-
-static int compare(const void *const a, const void *const b)
-{
-    return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
-}
-
-double dig_design_median(const size_t n, double value[])
-{
-    qsort(value, n, sizeof *value, compare);
-    return n == 0 ? 0.0 : value[n / 2];
 }

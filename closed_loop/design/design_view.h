@@ -12,6 +12,12 @@
 #define DIG_DESIGN_PLACES_MAX      64
 #define DIG_DESIGN_PRIOR           3.0 // 1 / variance of a place of which nothing is known
 
+/// The covariance of one dig's features at a place, the table's own error included; row major, n by
+/// n, of the first n features (DIG_FEATURE_BINS: the moment's).
+void dig_design_covariance(const struct dig_response_surface *surface,
+                           const struct dig_scatter *scatter, size_t trajectory,
+                           const double place[DIG_AXES], size_t n, double covariance[]);
+
 struct dig_design_view {
     size_t n; // features: DIG_FEATURE_BINS (moment) or DIG_FEATURES
     double lower[DIG_FEATURES * DIG_FEATURES]; // L of C = L L'
@@ -34,14 +40,20 @@ void dig_design_take_gravel_off(const struct dig_design_view *view, double d[]);
 
 double dig_design_product(size_t n, const double a[], const double b[]);
 
-/// Sorts value.
-double dig_design_median(size_t n, double value[]);
-
 /// Fills what *dig says of effects (design_effects.c).
 DIG_MUST_CHECK enum dig_status dig_design_effects(const struct dig_response_surface *surface,
                                                   const struct dig_scatter          *scatter,
                                                   const struct dig_soil *soil, size_t trajectory,
                                                   size_t places, const double place[][DIG_AXES],
                                                   struct dig_design_dig *dig);
+
+/// Draws gravels evenly over the table, digs each along every trajectory with the scatter of the
+/// table's own packings, and identifies it from the moment by its posterior mean on a grid: how
+/// right the theory is. Fills the simulated members of *design, whose ranking stands
+/// (design_simulate.c).
+DIG_MUST_CHECK enum dig_status dig_design_simulate(const struct dig_response_surface *surface,
+                                                   const struct dig_scatter          *scatter,
+                                                   const struct dig_design_settings  *settings,
+                                                   struct dig_design                 *design);
 
 #endif // DIG_CLOSED_LOOP_DESIGN_DESIGN_VIEW_H

@@ -40,6 +40,13 @@ static int ascending(const void *const a, const void *const b)
     return (x > y) - (x < y);
 }
 
+double dig_chance_median(const size_t n, double value[])
+{
+    assert(n > 0 && value != NULL);
+    qsort(value, n, sizeof value[0], ascending);
+    return value[n / 2];
+}
+
 void dig_chance_interval(const size_t n, double drawn[], double *const low, double *const high)
 {
     assert(n > 0 && drawn != NULL && low != NULL && high != NULL);

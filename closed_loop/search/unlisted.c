@@ -15,9 +15,9 @@ enum dig_status dig_unlisted_find(const struct dig_whitened_digs *const batch,
     assert(batch != NULL && plain != NULL && unlisted != NULL);
     struct dig_regressed means;
     struct dig_regressed digs;
-    enum dig_status      status = dig_regress_means(batch, soil, plain, &means);
+    enum dig_status      status = dig_regress(batch, soil, plain, false, &means);
     if (status == DIG_OK) {
-        status = dig_regress_digs(batch, soil, plain, &digs);
+        status = dig_regress(batch, soil, plain, true, &digs);
     }
     if (status != DIG_OK) {
         return status;
@@ -75,8 +75,11 @@ static void mean_left(const struct dig_whitened_digs *const batch,
     memset(mean, 0, DIG_FORCE_CHANNELS * sizeof mean[0]);
     for (size_t i = 0; i < batch->digs; i++) {
         double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        if (batch->dig[i].group != g) {
+            continue;
+        }
         left_of(soil, fitted, &batch->measured[batch->dig[i].measured], left);
-        for (size_t c = 0; batch->dig[i].group == g && c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 mean[c][k] += left[c][k] / (double)batch->group[g].digs;
             }

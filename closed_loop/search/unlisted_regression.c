@@ -173,42 +173,24 @@ static struct dig_regressed choose(const struct regression *const r, const size_
     return found;
 }
 
-enum dig_status dig_regress_means(const struct dig_whitened_digs *const batch,
-                                  const struct dig_soil *const          soil,
-                                  const struct dig_fitted *const        plain,
-                                  struct dig_regressed *const           regressed)
-{
-    assert(batch != NULL && soil != NULL && plain != NULL && regressed != NULL);
-    struct regression *const r = malloc(sizeof *r);
-    if (r == NULL) {
-        return DIG_ENOMEM;
-    }
-    enum dig_basis common[COMMON];
-    r->rows = 0;
-    for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_measured nominal = { .trajectory = (int)batch->group[g].trajectory,
-                                              .pass       = 1,
-                                              .pace       = 1.0 };
-        struct states             states;
-        double                    amplitude[DIG_FORCE_CHANNELS];
-        dig_basis_along(batch->surface->set, &nominal, states.value);
-        fill_mean(batch, soil, plain, g, &states, amplitude, r);
-    }
-    for (int b = 0; b < COMMON; b++) {
-        common[b] = (enum dig_basis)b;
-    }
-    *regressed = choose(r, COMMON, common);
-    free(r);
-    return DIG_OK;
-}
-
-// The functions along every dig of a batch, and their means over each group.
+// The functions along every dig of a batch, and of each group: the mean over its digs, or what the
+// trajectory alone tells.
 struct told {
     struct states dig[DIG_MEASURED_MAX];
     struct states mean[DIG_TRAJECTORY_MAX];
 };
 
-static void tell(const struct dig_whitened_digs *const batch, struct told *const told)
+static void tell_nominal(const struct dig_whitened_digs *const batch, struct told *const told)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_measured nominal = { .trajectory = (int)batch->group[g].trajectory,
+                                              .pass       = 1,
+                                              .pace       = 1.0 };
+        dig_basis_along(batch->surface->set, &nominal, told->mean[g].value);
+    }
+}
+
+static void tell_digs(const struct dig_whitened_digs *const batch, struct told *const told)
 {
     const bool paced = dig_basis_paces_differ(batch);
     memset(told->mean, 0, sizeof told->mean);
@@ -263,10 +245,9 @@ static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i
     r->rows += group->features;
 }
 
-enum dig_status dig_regress_digs(const struct dig_whitened_digs *const batch,
-                                 const struct dig_soil *const          soil,
-                                 const struct dig_fitted *const        plain,
-                                 struct dig_regressed *const           regressed)
+enum dig_status dig_regress(const struct dig_whitened_digs *const batch,
+                            const struct dig_soil *const soil, const struct dig_fitted *const plain,
+                            const bool each, struct dig_regressed *const regressed)
 {
     assert(batch != NULL && soil != NULL && plain != NULL && regressed != NULL);
     struct regression *const r    = malloc(sizeof *r);
@@ -277,14 +258,19 @@ enum dig_status dig_regress_digs(const struct dig_whitened_digs *const batch,
         return DIG_ENOMEM;
     }
     enum dig_basis candidate[DIG_BASES];
-    const size_t   candidates = dig_basis_told(batch, candidate);
+    const size_t   by_digs    = dig_basis_told(batch, candidate);
+    const size_t   candidates = each ? by_digs : COMMON; // which are the first
     double         amplitude[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
-    tell(batch, told);
+    if (each) {
+        tell_digs(batch, told);
+    } else {
+        tell_nominal(batch, told);
+    }
     r->rows = 0;
     for (size_t g = 0; g < batch->groups; g++) {
         fill_mean(batch, soil, plain, g, &told->mean[g], amplitude[g], r);
     }
-    for (size_t i = 0; i < batch->digs; i++) {
+    for (size_t i = 0; each && i < batch->digs; i++) {
         struct states less;
         if (differ(batch, told, i, candidates, candidate, &less)) {
             fill_dig(batch, i, &less, amplitude[batch->dig[i].group], r);

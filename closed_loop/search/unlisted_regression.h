@@ -18,19 +18,13 @@ struct dig_regressed {
 };
 
 /// Regresses what a fitted plain hypothesis leaves of the trajectories' means on the functions that
-/// the trajectory tells. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_regress_means(const struct dig_whitened_digs *batch,
-                                                 const struct dig_soil          *soil,
-                                                 const struct dig_fitted        *plain,
-                                                 struct dig_regressed           *regressed);
-
-/// The same of the means and of how the digs of a trajectory differ from each other, on all
+/// the trajectory tells. each: and of how the digs of a trajectory differ from each other, on all
 /// functions that the digs tell, at the paces they were dug with. With more functions to choose
-/// from each must bring more evidence, by the log of their number over that of
-/// dig_regress_means(): chance finds a function no more often than there. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_regress_digs(const struct dig_whitened_digs *batch,
-                                                const struct dig_soil          *soil,
-                                                const struct dig_fitted        *plain,
-                                                struct dig_regressed           *regressed);
+/// from each must bring more evidence, by the log of their number over that of those of the
+/// trajectory: chance finds a function no more often. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_regress(const struct dig_whitened_digs *batch,
+                                           const struct dig_soil          *soil,
+                                           const struct dig_fitted *plain, bool each,
+                                           struct dig_regressed *regressed);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_UNLISTED_REGRESSION_H

@@ -1,5 +1,6 @@
 #include "closed_loop/verdict/residual.h"
 
+#include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/regressors.h"
 
 #include <assert.h>
@@ -9,17 +10,6 @@
 struct integral {
     double wrong2, over_sigma2, time_s;
 };
-
-// Rig time that a point of the progress grid stands for.
-static double time_of_s(const struct dig_curve_set *const set, const size_t trajectory,
-                        const size_t point)
-{
-    const struct dig_trajectory *const t    = &set->trajectory[trajectory];
-    const double                       from = fmax((double)point - 0.5, 0.0);
-    const double                       to   = fmin((double)point + 0.5, DIG_CURVE_POINTS - 1);
-    return dig_trajectory_time_s(t, set->tooth_m, to / (DIG_CURVE_POINTS - 1)) -
-           dig_trajectory_time_s(t, set->tooth_m, from / (DIG_CURVE_POINTS - 1));
-}
 
 static struct dig_residual sum_up(const struct integral *const part, const double whole2)
 {
@@ -50,7 +40,7 @@ void dig_residual_of(const struct dig_curve_set *const set, const struct dig_mea
         }
         const enum dig_part in =
             dig_regressors_is_lifted(set, trajectory, progress) ? DIG_PART_LIFTED : DIG_PART_SOIL;
-        const double time_s = time_of_s(set, trajectory, k);
+        const double time_s = dig_score_time_s(set, trajectory, k);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             const double wrong = dig->value[c][k] - predicted[c][k];
             const double sigma = hypot(sd[c][k], dig->sigma[c][k]);

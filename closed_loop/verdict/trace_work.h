@@ -3,6 +3,7 @@
 #ifndef DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H
 #define DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H
 
+#include "closed_loop/fit/steps.h"
 #include "closed_loop/machine/machine_side.h"
 #include "closed_loop/search/search.h"
 #include "closed_loop/verdict/trace.h"

@@ -81,8 +81,8 @@ static void regress(struct dig_regressed *const means, struct dig_regressed *con
         dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
         DIG_OK);
     dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
-    assert_int_equal(dig_regress_means(batch, soil, &plain, means), DIG_OK);
-    assert_int_equal(dig_regress_digs(batch, soil, &plain, digs), DIG_OK);
+    assert_int_equal(dig_regress(batch, soil, &plain, false, means), DIG_OK);
+    assert_int_equal(dig_regress(batch, soil, &plain, true, digs), DIG_OK);
 }
 
 static bool has(const struct dig_regressed *const r, const enum dig_basis basis)

@@ -2,7 +2,7 @@
 
 #include "closed_loop/design/design.h"
 
-#include "closed_loop/design/design_report.h"
+#include "closed_loop/report/design_report.h"
 #include "tables/load_effects.h"
 #include "tools/digloop/commands.h"
 

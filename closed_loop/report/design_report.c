@@ -1,7 +1,8 @@
-#include "closed_loop/design/design_report.h"
+#include "closed_loop/report/design_report.h"
+
+#include "closed_loop/report/json.h"
 
 #include <assert.h>
-#include <math.h>
 
 static void put_row(FILE *const to, const struct dig_design *const design,
                     const struct dig_curve_set *const set, const size_t t)
@@ -24,30 +25,24 @@ static void put_effects(FILE *const to, const struct dig_design *const design,
 {
     bool any = false;
     for (int e = 0; e < DIG_EFFECTS; e++) {
-        for (size_t t = 0; t < design->digs; t++) {
-            any = any || design->dig[t].tells[e];
-        }
-    }
-    if (!any) {
-        return;
-    }
-    (void)fputs(
-        "\nhow far half of an effect's largest magnitude is from every plain gravel, one dig "
-        "with its forces, sigmas\n",
-        to);
-    for (int e = 0; e < DIG_EFFECTS; e++) {
         bool has = false;
         for (size_t t = 0; t < design->digs; t++) {
-            has = has || design->dig[t].tells[e];
+            if (!design->dig[t].tells[e]) {
+                continue;
+            }
+            if (!any) {
+                (void)fputs("\nhow far half of an effect's largest magnitude is from every plain "
+                            "gravel, one dig with its forces, sigmas\n",
+                            to);
+            }
+            if (!has) {
+                (void)fprintf(to, "  %-16s", dig_effect_name((enum dig_effect_id)e));
+            }
+            (void)fprintf(to, "  %s %.1f", set->trajectory[t].name, design->dig[t].sigmas[e]);
+            any = true;
+            has = true;
         }
         if (has) {
-            (void)fprintf(to, "  %-16s", dig_effect_name((enum dig_effect_id)e));
-            for (size_t t = 0; t < design->digs; t++) {
-                if (design->dig[t].tells[e]) {
-                    (void)fprintf(to, "  %s %.1f", set->trajectory[t].name,
-                                  design->dig[t].sigmas[e]);
-                }
-            }
             (void)fputs("\n", to);
         }
     }
@@ -91,21 +86,11 @@ void dig_design_text(const struct dig_design *const design, const struct dig_cur
         design->confirmed ? "it identifies better" : "not shown to identify better");
 }
 
-static void put_number(FILE *const to, const char *const before, const char *const key,
-                       const double value)
-{
-    if (isfinite(value)) {
-        (void)fprintf(to, "%s\"%s\": %.6g", before, key, value);
-    } else {
-        (void)fprintf(to, "%s\"%s\": null", before, key);
-    }
-}
-
 static void put_axes(FILE *const to, const char *const key, const double value[DIG_AXES])
 {
     (void)fprintf(to, ",\n   \"%s\": {", key);
     for (int a = 0; a < DIG_AXES; a++) {
-        put_number(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a), value[a]);
+        dig_json_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a), value[a]);
     }
     (void)fputs("}", to);
 }
@@ -116,22 +101,22 @@ static void put_dig(FILE *const to, const struct dig_design *const design,
     const struct dig_design_dig *const dig = &design->dig[t];
     (void)fprintf(to, "\n  {\"trajectory\": \"%s\", \"simple\": %s", set->trajectory[t].name,
                   dig->simple ? "true" : "false");
-    put_number(to, ", ", "duration_s", dig->duration_s);
-    put_number(to, ", ", "path_m", dig->path_m);
-    put_number(to, ",\n   ", "bits", dig->bits);
-    put_number(to, ", ", "bits_with_forces", dig->bits_wrench);
+    dig_json_member(to, ", ", "duration_s", dig->duration_s);
+    dig_json_member(to, ", ", "path_m", dig->path_m);
+    dig_json_member(to, ",\n   ", "bits", dig->bits);
+    dig_json_member(to, ", ", "bits_with_forces", dig->bits_wrench);
     (void)fprintf(to, ", \"partner\": \"%s\"", set->trajectory[dig->partner].name);
-    put_number(to, ", ", "bits_with_partner", dig->bits_partner);
+    dig_json_member(to, ", ", "bits_with_partner", dig->bits_partner);
     put_axes(to, "sd_left", dig->sd);
     put_axes(to, "simulated_left", dig->error_axis);
-    put_number(to, ", ", "simulated_left_all", dig->error);
-    put_number(to, ", ", "simulated_target_error", dig->target_error);
+    dig_json_member(to, ", ", "simulated_left_all", dig->error);
+    dig_json_member(to, ", ", "simulated_target_error", dig->target_error);
     (void)fputs(",\n   \"effects\": {", to);
     bool first = true;
     for (int e = 0; e < DIG_EFFECTS; e++) {
         if (dig->tells[e]) {
-            put_number(to, first ? "" : ", ", dig_effect_name((enum dig_effect_id)e),
-                       dig->sigmas[e]);
+            dig_json_member(to, first ? "" : ", ", dig_effect_name((enum dig_effect_id)e),
+                            dig->sigmas[e]);
             first = false;
         }
     }
@@ -139,7 +124,7 @@ static void put_dig(FILE *const to, const struct dig_design *const design,
     if (dig->pairs > 0) {
         (void)fprintf(to, ", \"hardest\": [\"%s\", \"%s\"]", dig_effect_name(dig->close[0]),
                       dig_effect_name(dig->close[1]));
-        put_number(to, ", ", "hardest_sigmas", dig->close_sigmas);
+        dig_json_member(to, ", ", "hardest_sigmas", dig->close_sigmas);
     }
     (void)fputs("}", to);
 }
@@ -153,9 +138,9 @@ void dig_design_json(const struct dig_design *const design, const struct dig_cur
         "{\"recommended\": \"%s\", \"reference\": \"%s\", \"target\": \"%s\", \"draws\": %zu,\n",
         set->trajectory[design->rank[0]].name, set->trajectory[design->reference].name,
         set->trajectory[design->target].name, design->draws);
-    put_number(to, " \"gain\": {", "value", design->gain);
-    put_number(to, ", ", "low", design->gain_low);
-    put_number(to, ", ", "high", design->gain_high);
+    dig_json_member(to, " \"gain\": {", "value", design->gain);
+    dig_json_member(to, ", ", "low", design->gain_low);
+    dig_json_member(to, ", ", "high", design->gain_high);
     (void)fprintf(to, "}, \"confirmed\": %s,\n \"ranking\": [",
                   design->confirmed ? "true" : "false");
     for (size_t i = 0; i < design->ranked; i++) {
