@@ -101,8 +101,7 @@ static int choose_trajectory(struct dig_estimator *const        e,
     for (size_t t = 0; t < tracks; t++) {
         track_of[t] = &e->follower[t].track;
     }
-    const int chosen = dig_track_choose(tracks, track_of, limit_m, DIG_TRACK_TIE_SHARE * limit_m,
-                                        e->choice.candidate);
+    const int chosen = dig_track_choose(tracks, track_of, limit_m, e->choice.candidate);
     return dig_choice_step(&e->choice, tracks, chosen);
 }
 

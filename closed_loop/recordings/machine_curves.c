@@ -86,10 +86,8 @@ static void solve_all(const struct dig_machine *const     machine,
         if (fabs(correction->delay_s) > 0.0) {
             put_back(dig, i, correction->delay_s, &sample, &rates);
         }
-        r.solved = (with_sigma ? dig_wrench_correct(&corrected, correction, &sample, &rates,
-                                                    &r.wrench, &front)
-                               : dig_wrench_without_sigma(&corrected, correction, &sample, &rates,
-                                                          &r.wrench, &front)) == DIG_OK;
+        r.solved = dig_wrench_correct(&corrected, correction, &sample, &rates, with_sigma,
+                                      &r.wrench, &front) == DIG_OK;
         if (r.solved) {
             const double phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
             r.pose               = (struct dig_path_point){

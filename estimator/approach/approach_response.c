@@ -37,14 +37,6 @@ static void warp(const struct dig_trajectory *const dug, const struct dig_trajec
     }
 }
 
-static double read_off(const float curve[const DIG_CURVE_POINTS], const double place)
-{
-    const double at = fmin(fmax(place, 0.0), DIG_CURVE_POINTS - 1);
-    const size_t k  = (size_t)fmin(floor(at), DIG_CURVE_POINTS - 2);
-    const double f  = at - (double)k;
-    return (1.0 - f) * (double)curve[k] + f * (double)curve[k + 1];
-}
-
 // Adds weight times one node's curves, and the scatter of their mean.
 static void add_node(const struct dig_curve *const curve, const double weight, const int packings,
                      const double               place[const DIG_CURVE_POINTS],
@@ -53,8 +45,8 @@ static void add_node(const struct dig_curve *const curve, const double weight, c
     for (int c = 0; c < DIG_CHANNELS; c++) {
         double scatter2 = 0.0;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double sd = read_off(curve->sd[c], place[k]);
-            response->change[c][k] += weight * read_off(curve->mean[c], place[k]);
+            const double sd = dig_curve_at(curve->sd[c], place[k]);
+            response->change[c][k] += weight * dig_curve_at(curve->mean[c], place[k]);
             scatter2 += sd * sd;
         }
         response->scatter2[c] += weight * weight * scatter2 / (DIG_CURVE_POINTS * (double)packings);
@@ -84,7 +76,7 @@ bool dig_response_own(const struct dig_curve_set *const set, const size_t entry,
         warp(&dug, &other, set->tooth_m, place);
         for (size_t k = 0; i == 0 && k < DIG_CURVE_POINTS; k++) {
             for (int c = 0; c < DIG_CHANNELS; c++) {
-                made.plain[c][k] = read_off(nodes.curve[0]->mean[c], place[k]);
+                made.plain[c][k] = dig_curve_at(nodes.curve[0]->mean[c], place[k]);
             }
         }
         // The change is against the plain curve, which is one of the nodes itself.
@@ -135,7 +127,7 @@ bool dig_response_borrowed(const struct dig_curve_set *const set, const size_t e
     for (int c = 0; c < DIG_CHANNELS; c++) {
         made.rms[c] = one.rms[c];
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            made.plain[c][k] = read_off(own->mean[c], place[k]);
+            made.plain[c][k] = dig_curve_at(own->mean[c], place[k]);
         }
     }
     for (size_t e = 0; e < set->entries; e++) {

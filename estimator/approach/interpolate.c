@@ -5,6 +5,15 @@
 
 static const double edge = 1e-9;
 
+double dig_curve_at(const float y[const DIG_CURVE_POINTS], const double place)
+{
+    assert(y != NULL);
+    const double at = fmin(fmax(place, 0.0), DIG_CURVE_POINTS - 1);
+    const size_t k  = (size_t)fmin(floor(at), DIG_CURVE_POINTS - 2);
+    const double f  = at - (double)k;
+    return (1.0 - f) * (double)y[k] + f * (double)y[k + 1];
+}
+
 static double coordinate(const enum dig_axis axis, const double value)
 {
     return axis == DIG_AXIS_DENSITY_kgpm3 ? log(value) : value;
@@ -116,6 +125,27 @@ enum dig_status dig_cell_find(const struct dig_curve_set *const set,
         }
     }
     return dig_cell_at(set, place, trajectory, cell);
+}
+
+struct dig_cell dig_cell_of_entry(const struct dig_curve_set *const set, const size_t slot)
+{
+    assert(set != NULL && set->packings[slot] > 0);
+    return (struct dig_cell){ .corners          = 1,
+                              .curve            = { &set->curve[slot] },
+                              .weight           = { 1.0 },
+                              .inverse_packings = 1.0 / (double)set->packings[slot],
+                              .mean_variance    = 1.0 / (double)set->packings[slot] };
+}
+
+void dig_cell_curve(const struct dig_cell *const cell, struct dig_curve *const curve)
+{
+    assert(cell != NULL && curve != NULL);
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            curve->mean[c][k] = (float)dig_cell_mean(cell, (enum dig_channel)c, k);
+            curve->sd[c][k]   = (float)dig_cell_sd(cell, (enum dig_channel)c, k);
+        }
+    }
 }
 
 // Weighted sum of the cell's curves, four at a time so that a point stays in a register; in the

@@ -11,6 +11,9 @@
 
 #define DIG_CELL_CORNERS (1 << DIG_AXES)
 
+/// Between the points of one channel, at a place 0 … DIG_CURVE_POINTS - 1; held at the ends.
+double dig_curve_at(const float y[DIG_CURVE_POINTS], double place);
+
 /// The entries around a gravel and their weights; corners without weight are left out.
 struct dig_cell {
     size_t                  corners;
@@ -34,6 +37,9 @@ struct dig_axis_interval {
 /// DIG_ENOMATCH when the value is outside the axis; one within 1e-9 of its end counts as on it.
 DIG_MUST_CHECK enum dig_status dig_axis_locate(const struct dig_curve_set *set, enum dig_axis axis,
                                                double value, struct dig_axis_interval *place);
+
+/// The cell of one entry's curve alone, [slot], which must be there.
+struct dig_cell dig_cell_of_entry(const struct dig_curve_set *set, size_t slot);
 
 /// The cell at a place on each axis, which must have points. DIG_ENOMATCH when a corner with weight
 /// is missing or lacks the trajectory.
@@ -68,6 +74,9 @@ static inline double dig_cell_sd(const struct dig_cell *const cell, const enum d
     }
     return sum;
 }
+
+/// Both of all points and channels.
+void dig_cell_curve(const struct dig_cell *cell, struct dig_curve *curve);
 
 /// The same of all points at once, several times faster.
 void dig_cell_blend(const struct dig_cell *cell, enum dig_channel channel,

@@ -61,10 +61,9 @@ static enum dig_status observe_plain(const struct dig_curve_set *const set, cons
 {
     const int                  t = out->trajectory;
     struct dig_abort_detection aborted;
-    const bool                 left =
-        !recording->followed.missing &&
-        dig_abort_detection_choose(set->trajectories, route, &recording->path, limit_m,
-                                   DIG_TRACK_TIE_SHARE * limit_m, whole, &aborted) == t;
+    const bool                 left = !recording->followed.missing &&
+                      dig_abort_detection_choose(set->trajectories, route, &recording->path,
+                                                 limit_m, whole, &aborted) == t;
     const struct dig_track *const track = left ? &aborted.track : &whole[t];
     const enum dig_status         status =
         dig_window_observe(&recording->window, &route[t], track, left ? limit_m : 2.0 * limit_m,
@@ -76,21 +75,27 @@ static enum dig_status observe_plain(const struct dig_curve_set *const set, cons
     return status;
 }
 
-// Chooses the trajectory by the whole path, and observes along it.
-static enum dig_status observe(const struct dig_curve_set *const set, const double limit_m,
-                               const struct dig_route         route[],
-                               struct dig_recorded_dig *const recording,
-                               struct dig_observation *const  observation)
+static void make_routes(const struct dig_curve_set *const set,
+                        struct dig_route                  route[const DIG_TRAJECTORY_MAX])
 {
-    const size_t            tracks = set->trajectories;
-    struct dig_track        fitted[DIG_TRAJECTORY_MAX];
-    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
-    for (size_t t = 0; t < tracks; t++) {
-        fitted[t]   = dig_track_fit(&route[t], &recording->path, limit_m);
-        track_of[t] = &fitted[t];
+    for (size_t t = 0; t < set->trajectories; t++) {
+        route[t] = dig_approach_route(set, t);
     }
+}
+
+// Chooses the trajectory by the whole path, and observes along it.
+enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const          set,
+                                         const struct dig_estimator_settings *const settings,
+                                         struct dig_recorded_dig *const             recording,
+                                         struct dig_observation *const              observation)
+{
+    assert(set != NULL && settings != NULL && recording != NULL && observation != NULL);
+    const double     limit_m = settings->path_limit_m;
+    struct dig_route route[DIG_TRAJECTORY_MAX];
+    struct dig_track fitted[DIG_TRAJECTORY_MAX];
+    make_routes(set, route);
     const int chosen =
-        dig_track_choose(tracks, track_of, limit_m, DIG_TRACK_TIE_SHARE * limit_m, -1);
+        dig_track_fit_all(set->trajectories, route, &recording->path, limit_m, fitted);
     if (chosen < 0) {
         return DIG_ENOMATCH;
     }
@@ -109,19 +114,6 @@ static enum dig_status observe(const struct dig_curve_set *const set, const doub
     return DIG_OK;
 }
 
-enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const          set,
-                                         const struct dig_estimator_settings *const settings,
-                                         struct dig_recorded_dig *const             recording,
-                                         struct dig_observation *const              observation)
-{
-    assert(set != NULL && settings != NULL && recording != NULL && observation != NULL);
-    struct dig_route route[DIG_TRAJECTORY_MAX];
-    for (size_t t = 0; t < set->trajectories; t++) {
-        route[t] = dig_approach_route(set, t);
-    }
-    return observe(set, settings->path_limit_m, route, recording, observation);
-}
-
 bool dig_recorded_dig_was_aborted(const struct dig_curve_set *const          set,
                                   const struct dig_estimator_settings *const settings,
                                   const struct dig_recorded_dig *const       recording,
@@ -130,12 +122,9 @@ bool dig_recorded_dig_was_aborted(const struct dig_curve_set *const          set
     assert(set != NULL && settings != NULL && recording != NULL && trajectory != NULL &&
            progress != NULL);
     struct dig_route route[DIG_TRAJECTORY_MAX];
-    for (size_t t = 0; t < set->trajectories; t++) {
-        route[t] = dig_approach_route(set, t);
-    }
-    const double limit_m = settings->path_limit_m;
+    make_routes(set, route);
     if (!dig_followed_was_aborted(&recording->followed, set->trajectories, route, &recording->path,
-                                  limit_m, DIG_TRACK_TIE_SHARE * limit_m)) {
+                                  settings->path_limit_m)) {
         return false;
     }
     *trajectory = recording->followed.trajectory;

@@ -15,11 +15,7 @@ static const double lift_from = 0.8;
 static void reduce(const double value[], const struct dig_curve *const plain,
                    double delta[DIG_CHANNELS][DIG_CURVE_POINTS])
 {
-    double sum = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += pow((double)plain->mean[DIG_CHANNEL_MY_Nm][k], 2.0);
-    }
-    const double rms_Nm = sqrt(sum / DIG_CURVE_POINTS);
+    const double rms_Nm = sqrt(dig_curve_mean_square(plain->mean[DIG_CHANNEL_MY_Nm]));
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = ((double)k / (DIG_CURVE_POINTS - 1) - lift_from) / (1.0 - lift_from);
         delta[DIG_CHANNEL_MY_Nm][k] += value[LIFT_SHARE] * rms_Nm * fmax(at, 0.0);

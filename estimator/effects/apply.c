@@ -26,15 +26,6 @@ enum dig_status dig_effects_correction(const struct dig_model *const model,
     return DIG_OK;
 }
 
-static double rms(const struct dig_curve *const curve, const int channel)
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += pow((double)curve->mean[channel][k], 2.0);
-    }
-    return sqrt(sum / DIG_CURVE_POINTS);
-}
-
 static void add(const struct dig_template *const added, struct dig_curve *const curve)
 {
     for (int c = 0; c < DIG_CHANNELS; c++) {
@@ -49,7 +40,7 @@ static void add_unlisted(const struct dig_model_unlisted *const unlisted, const 
                          const struct dig_curve *const plain, struct dig_curve *const curve)
 {
     for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        const double scale = rms(plain, c);
+        const double scale = sqrt(dig_curve_mean_square(plain->mean[c]));
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double more = scale * (double)unlisted->share[trajectory][c][k];
             curve->mean[c][k] = (float)((double)curve->mean[c][k] + more);

@@ -42,25 +42,6 @@ enum dig_status dig_effect_values(const struct dig_model_effect *const found,
     return DIG_OK;
 }
 
-// The plain curve of a gravel, which a reduced form scales.
-static enum dig_status plain_at(const struct dig_curve_set *const plain,
-                                const struct dig_gravel *const gravel, const size_t trajectory,
-                                struct dig_curve *const curve)
-{
-    struct dig_cell       cell;
-    const enum dig_status status = dig_cell_find(plain, gravel, trajectory, &cell);
-    if (status != DIG_OK) {
-        return status;
-    }
-    for (int c = 0; c < DIG_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            curve->mean[c][k] = (float)dig_cell_mean(&cell, (enum dig_channel)c, k);
-            curve->sd[c][k]   = 0.0F;
-        }
-    }
-    return DIG_OK;
-}
-
 static void add_factor(const struct dig_effect *const    effect,
                        const struct dig_curve_set *const plain, const double value[],
                        const size_t trajectory, const double share,
@@ -110,11 +91,13 @@ enum dig_status dig_effect_add(const struct dig_effect *const     effect,
         times(effect->contrasted ? value[1] : 1.0, &sum);
     }
     if (effect->factor != NULL || effect->reduce != NULL) {
+        struct dig_cell       cell;
         struct dig_curve      curve;
-        const enum dig_status status = plain_at(plain, gravel, dig->trajectory, &curve);
+        const enum dig_status status = dig_cell_find(plain, gravel, dig->trajectory, &cell);
         if (status != DIG_OK) {
             return status;
         }
+        dig_cell_curve(&cell, &curve);
         if (effect->factor != NULL) {
             add_factor(effect, plain, value, dig->trajectory, share, &curve, sum.delta);
         }

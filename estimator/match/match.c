@@ -112,16 +112,10 @@ enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
     }
     struct dig_cell       cell;
     const enum dig_status status = dig_cell_find(set, gravel, trajectory, &cell);
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        dig_cell_curve(&cell, curve);
     }
-    for (int c = 0; c < DIG_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            curve->mean[c][k] = (float)dig_cell_mean(&cell, (enum dig_channel)c, k);
-            curve->sd[c][k]   = (float)dig_cell_sd(&cell, (enum dig_channel)c, k);
-        }
-    }
-    return DIG_OK;
+    return status;
 }
 
 // Distance of an entry from all digs; infinite when it lacks one of their trajectories.
@@ -134,13 +128,7 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
         if (set->packings[slot] <= 0) {
             return (struct dig_distance){ .distance = INFINITY };
         }
-        const struct dig_cell cell = {
-            .corners          = 1,
-            .curve            = { &set->curve[slot] },
-            .weight           = { 1.0 },
-            .inverse_packings = 1.0 / (double)set->packings[slot],
-            .mean_variance    = 1.0 / (double)set->packings[slot],
-        };
+        const struct dig_cell cell = dig_cell_of_entry(set, slot);
         dig_misfit_add(&all, dig_cell_misfit(&cell, &sums->group[g]));
     }
     return dig_misfit_distance(&all);

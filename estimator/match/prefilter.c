@@ -17,14 +17,9 @@ double dig_prefilter_relative2(const struct dig_curve_set *const set, const size
         const struct dig_curve *const curve = &set->curve[slot];
 
         // Each entry counts alike, however hard it resists.
-        double sd2   = 0.0;
-        double mean2 = 0.0;
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            sd2 += pow((double)curve->sd[channel][k], 2.0);
-            mean2 += pow((double)curve->mean[channel][k], 2.0);
-        }
+        const double mean2 = dig_curve_mean_square(curve->mean[channel]);
         if (mean2 > 0.0) {
-            sum += sd2 / mean2;
+            sum += dig_curve_mean_square(curve->sd[channel]) / mean2;
             entries += 1.0;
         }
     }

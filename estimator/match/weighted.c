@@ -32,14 +32,10 @@ struct search {
 static void whiten(const struct dig_curve_set *const set, const size_t nearest,
                    struct compared_group *const a)
 {
-    const struct dig_gaussian *const g    = &a->gaussian;
-    const size_t                     slot = nearest * set->trajectories + g->trajectory;
-    assert(set->packings[slot] > 0);
-    const struct dig_cell cell = { .corners          = 1,
-                                   .curve            = { &set->curve[slot] },
-                                   .weight           = { 1.0 },
-                                   .inverse_packings = 1.0 / (double)set->packings[slot] };
-    double                u[NUMBERS];
+    const struct dig_gaussian *const g = &a->gaussian;
+    const struct dig_cell            cell =
+        dig_cell_of_entry(set, nearest * set->trajectories + g->trajectory);
+    double u[NUMBERS];
     dig_gaussian_scale(g, &cell, u);
     for (size_t i = 0; i < g->numbers; i++) {
         a->white[i] = 0.0;

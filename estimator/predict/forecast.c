@@ -68,9 +68,7 @@ static void stretch(const double own_m, const double plain_m, float curve[const 
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double before_m = plain_m * (1.0 - (double)k / (DIG_CURVE_POINTS - 1));
         const double place    = fmax(1.0 - before_m / own_m, 0.0) * (DIG_CURVE_POINTS - 1);
-        const size_t i        = (size_t)fmin(floor(place), DIG_CURVE_POINTS - 2);
-        const double f        = place - (double)i;
-        out[k]                = (float)((1.0 - f) * (double)curve[i] + f * (double)curve[i + 1]);
+        out[k]                = (float)dig_curve_at(curve, place);
     }
     memcpy(curve, out, sizeof out);
 }

@@ -6,14 +6,6 @@
 #include <math.h>
 #include <stddef.h>
 
-static double read_off(const float curve[DIG_CURVE_POINTS], const double progress)
-{
-    const double at = fmin(fmax(progress, 0.0), 1.0) * (DIG_CURVE_POINTS - 1);
-    const size_t k  = (size_t)fmin(floor(at), DIG_CURVE_POINTS - 2);
-    const double f  = at - (double)k;
-    return (1.0 - f) * (double)curve[k] + f * (double)curve[k + 1];
-}
-
 void dig_predict_points(const struct dig_curve *const curve, const double lambda,
                         struct dig_prediction *const prediction)
 {
@@ -22,14 +14,15 @@ void dig_predict_points(const struct dig_curve *const curve, const double lambda
     const double lambda4 = lambda3 * lambda;
     for (size_t i = 0; i < DIG_PREDICTION_POINTS; i++) {
         const double share = (double)i / (DIG_PREDICTION_POINTS - 1);
-        const double at    = prediction->from_progress +
-                          share * (prediction->to_progress - prediction->from_progress);
-        prediction->moment_Nm[i]  = lambda4 * read_off(curve->mean[DIG_CHANNEL_MY_Nm], at);
-        prediction->sigma_Nm[i]   = lambda4 * read_off(curve->sd[DIG_CHANNEL_MY_Nm], at);
-        prediction->Fx_N[i]       = lambda3 * read_off(curve->mean[DIG_CHANNEL_FX_N], at);
-        prediction->Fz_N[i]       = lambda3 * read_off(curve->mean[DIG_CHANNEL_FZ_N], at);
-        prediction->sigma_Fx_N[i] = lambda3 * read_off(curve->sd[DIG_CHANNEL_FX_N], at);
-        prediction->sigma_Fz_N[i] = lambda3 * read_off(curve->sd[DIG_CHANNEL_FZ_N], at);
+        const double at    = (DIG_CURVE_POINTS - 1) *
+                          (prediction->from_progress +
+                           share * (prediction->to_progress - prediction->from_progress));
+        prediction->moment_Nm[i]  = lambda4 * dig_curve_at(curve->mean[DIG_CHANNEL_MY_Nm], at);
+        prediction->sigma_Nm[i]   = lambda4 * dig_curve_at(curve->sd[DIG_CHANNEL_MY_Nm], at);
+        prediction->Fx_N[i]       = lambda3 * dig_curve_at(curve->mean[DIG_CHANNEL_FX_N], at);
+        prediction->Fz_N[i]       = lambda3 * dig_curve_at(curve->mean[DIG_CHANNEL_FZ_N], at);
+        prediction->sigma_Fx_N[i] = lambda3 * dig_curve_at(curve->sd[DIG_CHANNEL_FX_N], at);
+        prediction->sigma_Fz_N[i] = lambda3 * dig_curve_at(curve->sd[DIG_CHANNEL_FZ_N], at);
     }
 }
 
@@ -49,12 +42,9 @@ enum dig_status dig_predict_cells(const struct dig_curve_set *const set,
             found++;
         }
     }
-    if (found == 0 && dig_cell_find(set, &match->gravel, trajectory, &cell[0]) == DIG_OK) {
-        found = 1;
-    }
-    if (found == 0 &&
-        dig_cell_find(set, &set->gravel[match->nearest], trajectory, &cell[0]) == DIG_OK) {
-        found = 1;
+    const struct dig_gravel *const instead[] = { &match->gravel, &set->gravel[match->nearest] };
+    for (size_t i = 0; found == 0 && i < sizeof instead / sizeof instead[0]; i++) {
+        found = dig_cell_find(set, instead[i], trajectory, &cell[0]) == DIG_OK ? 1 : 0;
     }
     if (found == 0) {
         return DIG_ENOMATCH;

@@ -96,24 +96,19 @@ bool dig_abort_detection_find(const struct dig_route *const route,
 
 int dig_abort_detection_choose(const size_t routes, const struct dig_route route[],
                                const struct dig_path *const path, const double limit_m,
-                               const double tie_m, const struct dig_track whole[],
+                               const struct dig_track            whole[],
                                struct dig_abort_detection *const aborted)
 {
-    assert(routes <= DIG_TRAJECTORY_MAX && aborted != NULL);
+    assert(aborted != NULL);
     for (size_t r = 0; r < routes; r++) {
         struct dig_abort_detection d;
         if (!dig_abort_detection_find(&route[r], path, limit_m, &whole[r], &d)) {
             continue;
         }
-        struct dig_path until = *path;
-        until.end             = d.until;
-        struct dig_track        fitted[DIG_TRAJECTORY_MAX];
-        const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
-        for (size_t o = 0; o < routes; o++) {
-            fitted[o]   = dig_track_fit(&route[o], &until, limit_m);
-            track_of[o] = &fitted[o];
-        }
-        if (dig_track_choose(routes, track_of, limit_m, tie_m, -1) == (int)r) {
+        struct dig_track fitted[DIG_TRAJECTORY_MAX];
+        struct dig_path  until = *path;
+        until.end              = d.until;
+        if (dig_track_fit_all(routes, route, &until, limit_m, fitted) == (int)r) {
             *aborted = d;
             return (int)r;
         }

@@ -35,10 +35,10 @@ bool dig_abort_detection_find(const struct dig_route *route, const struct dig_pa
                               double limit_m, const struct dig_track *whole,
                               struct dig_abort_detection *aborted);
 
-/// The route that the path left, if up to there it fits no other within tie_m; -1: none. whole: the
-/// fits of the whole path.
+/// The route that the path left, if up to there it fits no other as well (dig_track_choose()); -1:
+/// none. whole: the fits of the whole path.
 int dig_abort_detection_choose(size_t routes, const struct dig_route route[],
-                               const struct dig_path *path, double limit_m, double tie_m,
+                               const struct dig_path *path, double limit_m,
                                const struct dig_track whole[], struct dig_abort_detection *aborted);
 
 #endif // DIG_ESTIMATOR_TRACK_ABORT_DETECTION_H

@@ -37,9 +37,9 @@ void dig_followed_off(struct dig_followed *const followed)
 
 bool dig_followed_was_aborted(const struct dig_followed *const followed, const size_t routes,
                               const struct dig_route route[], const struct dig_path *const path,
-                              const double limit_m, const double tie_m)
+                              const double limit_m)
 {
-    assert(followed != NULL && route != NULL && path != NULL && routes <= DIG_TRAJECTORY_MAX);
+    assert(followed != NULL && route != NULL && path != NULL);
     if (!followed->any || !followed->left || followed->missing ||
         !(followed->progress >= DIG_ENDING_LEAST && followed->progress < DIG_ENDING_WHOLE_FROM)) {
         return false;
@@ -49,11 +49,6 @@ bool dig_followed_was_aborted(const struct dig_followed *const followed, const s
     if (until.end <= until.contact) {
         return false;
     }
-    struct dig_track        fitted[DIG_TRAJECTORY_MAX];
-    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
-    for (size_t r = 0; r < routes; r++) {
-        fitted[r]   = dig_track_fit(&route[r], &until, limit_m);
-        track_of[r] = &fitted[r];
-    }
-    return dig_track_choose(routes, track_of, limit_m, tie_m, -1) == followed->trajectory;
+    struct dig_track fitted[DIG_TRAJECTORY_MAX];
+    return dig_track_fit_all(routes, route, &until, limit_m, fitted) == followed->trajectory;
 }

@@ -36,9 +36,10 @@ void dig_followed_off(struct dig_followed *followed);
 
 /// For a dig whose whole path fits no route: whether it left the followed one before its end. A
 /// trajectory chosen too soon does not count: the path up to where it left must fit the route
-/// within limit_m, and better by tie_m than any other. Costs as much as fitting a whole path.
+/// within limit_m, and better than any other (dig_track_choose()). Costs as much as fitting a whole
+/// path.
 bool dig_followed_was_aborted(const struct dig_followed *followed, size_t routes,
                               const struct dig_route route[], const struct dig_path *path,
-                              double limit_m, double tie_m);
+                              double limit_m);
 
 #endif // DIG_ESTIMATOR_TRACK_FOLLOWED_H

@@ -216,11 +216,12 @@ int dig_choice_step(struct dig_choice *const choice, const size_t tracks, const 
 }
 
 int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
-                     const double limit_m, const double tie_m, const int current)
+                     const double limit_m, const int current)
 {
-    int    best     = -1;
-    double best_m   = INFINITY;
-    double second_m = INFINITY;
+    const double tie_m    = DIG_TRACK_TIE_SHARE * limit_m;
+    int          best     = -1;
+    double       best_m   = INFINITY;
+    double       second_m = INFINITY;
     for (size_t t = 0; t < tracks; t++) {
         if (track[t]->rms_m < best_m) {
             second_m = best_m;
@@ -237,4 +238,17 @@ int dig_track_choose(const size_t tracks, const struct dig_track *const track[],
         return best;
     }
     return current >= 0 && track[current]->rms_m - best_m < tie_m ? current : -1;
+}
+
+int dig_track_fit_all(const size_t routes, const struct dig_route route[],
+                      const struct dig_path *const path, const double limit_m,
+                      struct dig_track fitted[])
+{
+    assert(routes <= DIG_TRAJECTORY_MAX && (routes == 0 || fitted != NULL));
+    const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
+    for (size_t r = 0; r < routes; r++) {
+        fitted[r]   = dig_track_fit(&route[r], path, limit_m);
+        track_of[r] = &fitted[r];
+    }
+    return dig_track_choose(routes, track_of, limit_m, -1);
 }

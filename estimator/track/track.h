@@ -60,10 +60,14 @@ void dig_follower_step(const struct dig_route *route, const struct dig_path *pat
 struct dig_track dig_track_fit(const struct dig_route *route, const struct dig_path *path,
                                double limit_m);
 
-/// The track that fits best; -1 when none is within limit_m, or the best two are tied (their rms
-/// differ by less than tie_m). current: the choice so far, kept while it is tied; or -1.
+/// The track that fits best; -1 when none is within limit_m, or the best two are tied. current: the
+/// choice so far, kept while it is tied; or -1.
 int dig_track_choose(size_t tracks, const struct dig_track *const track[], double limit_m,
-                     double tie_m, int current);
+                     int current);
+
+/// Fits the path to every route, and chooses among the fits. Some hundred microseconds a route.
+int dig_track_fit_all(size_t routes, const struct dig_route route[], const struct dig_path *path,
+                      double limit_m, struct dig_track fitted[]);
 
 /// The choice among the tracks, debounced: it is made anew every tick.
 struct dig_choice {

@@ -157,12 +157,12 @@ static double samples_within(const struct dig_window *const window, const struct
     return fmax((to_s - from_s) * per_s, 1.0);
 }
 
-// Whether the range has a hole: a gap longer than the smoothing.
 double dig_window_hole_s(const double half_s)
 {
     return fmax(half_s, 0.02);
 }
 
+// Whether the range has a hole: a gap longer than the smoothing.
 static bool has_hole(const struct dig_window *const window, const struct range range,
                      const double half_s)
 {
@@ -205,20 +205,6 @@ static size_t find_spots(const struct dig_window *const window, const struct ran
     return points;
 }
 
-// Smooths window->value and evaluates it at the grid.
-static void read_off(struct dig_window *const window, const struct range range, const double half_s,
-                     const struct spot spot[], double out[DIG_CURVE_POINTS])
-{
-    dig_curve_smooth(range.end - range.first, &window->time_s[range.first],
-                     &window->value[range.first], half_s, &window->smooth[range.first]);
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const size_t i = spot[k].sample;
-        out[k]         = spot[k].measured ? window->smooth[i] +
-                                        spot[k].share * (window->smooth[i + 1] - window->smooth[i])
-                                          : 0.0;
-    }
-}
-
 // A sample's sigma after smoothing: white noise averages, the slow part does not.
 static double smoothed_sigma(const struct dig_window *const window, const struct range range,
                              const size_t i, const double half_s, const double sigma,
@@ -228,47 +214,51 @@ static double smoothed_sigma(const struct dig_window *const window, const struct
     return sqrt(slow * slow + fast / samples_within(window, range, i, half_s));
 }
 
-static void read_moment(struct dig_window *const window, const struct range range,
-                        const double half_s, const struct spot spot[],
-                        struct dig_observation *const observation)
+// One channel of a sample: the moment, then the forces.
+struct reading {
+    double value, sigma, slow;
+};
+
+static struct reading reading_of(const struct dig_window_sample *const sample, const size_t channel)
+{
+    return channel == DIG_CHANNEL_MY_Nm
+               ? (struct reading){ sample->moment_Nm, (double)sample->sigma_Nm,
+                                   (double)sample->slow_Nm }
+               : (struct reading){ (double)sample->force_N[channel - 1],
+                                   (double)sample->force_sigma_N[channel - 1],
+                                   (double)sample->force_slow_N[channel - 1] };
+}
+
+// Smooths a channel and evaluates it and its sigma at the grid.
+static void read_channel(struct dig_window *const window, const struct range range,
+                         const double half_s, const struct spot spot[], const size_t channel,
+                         double out[DIG_CURVE_POINTS], double sigma[DIG_CURVE_POINTS])
 {
     for (size_t i = range.first; i < range.end; i++) {
-        window->value[i] = window->sample[i].moment_Nm;
+        window->value[i] = reading_of(&window->sample[i], channel).value;
     }
-    read_off(window, range, half_s, spot, observation->moment_Nm);
+    dig_curve_smooth(range.end - range.first, &window->time_s[range.first],
+                     &window->value[range.first], half_s, &window->smooth[range.first]);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const struct dig_window_sample *const at = &window->sample[spot[k].sample];
-
-        observation->sigma_Nm[k] = spot[k].measured
-                                       ? smoothed_sigma(window, range, spot[k].sample, half_s,
-                                                        (double)at->sigma_Nm, (double)at->slow_Nm)
-                                       : 0.0;
+        const size_t i = spot[k].sample;
+        out[k]         = 0.0;
+        sigma[k]       = 0.0;
+        if (spot[k].measured) {
+            const struct reading at = reading_of(&window->sample[i], channel);
+            out[k] =
+                window->smooth[i] + spot[k].share * (window->smooth[i + 1] - window->smooth[i]);
+            sigma[k] = smoothed_sigma(window, range, i, half_s, at.sigma, at.slow);
+        }
     }
 }
 
-static void read_forces(struct dig_window *const window, const struct range range,
-                        const double half_s, const struct spot spot[],
-                        struct dig_observation *const observation)
+static bool has_forces(const struct dig_window *const window, const struct range range)
 {
-    observation->forces = true;
+    bool has = true;
     for (size_t i = range.first; i < range.end; i++) {
-        observation->forces = observation->forces && window->sample[i].has_forces;
+        has = has && window->sample[i].has_forces;
     }
-    for (size_t c = 0; observation->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
-        for (size_t i = range.first; i < range.end; i++) {
-            window->value[i] = (double)window->sample[i].force_N[c];
-        }
-        read_off(window, range, half_s, spot, observation->force_N[c]);
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const struct dig_window_sample *const at = &window->sample[spot[k].sample];
-
-            observation->force_sigma_N[c][k] =
-                spot[k].measured
-                    ? smoothed_sigma(window, range, spot[k].sample, half_s,
-                                     (double)at->force_sigma_N[c], (double)at->force_slow_N[c])
-                    : 0.0;
-        }
-    }
+    return has;
 }
 
 enum dig_status dig_window_observe(struct dig_window *const      window,
@@ -289,8 +279,13 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     if (find_spots(window, range, first, last, spot) < 2) {
         return DIG_ENOMATCH;
     }
-    read_moment(window, range, half_s, spot, observation);
-    read_forces(window, range, half_s, spot, observation);
+    read_channel(window, range, half_s, spot, DIG_CHANNEL_MY_Nm, observation->moment_Nm,
+                 observation->sigma_Nm);
+    observation->forces = has_forces(window, range);
+    for (size_t c = 1; observation->forces && c < DIG_FORCE_CHANNELS; c++) {
+        read_channel(window, range, half_s, spot, c, observation->force_N[c - 1],
+                     observation->force_sigma_N[c - 1]);
+    }
     const struct dig_path_point *const left = &window->sample[window->count - 1].pose;
 
     observation->ending     = window->in_progress

@@ -11,6 +11,7 @@
 #include "estimator/wrench/correction.h"
 #include "estimator/wrench/cylinder.h"
 #include "estimator/wrench/rates.h"
+#include "estimator/wrench/soil_wrench.h"
 #include "estimator/wrench/statics.h"
 
 /// The readings of a sample, by joint. friction and rates may be NULL: none.
@@ -21,8 +22,6 @@ struct dig_readings {
     const struct dig_friction *friction; // [DIG_JOINTS]
     const struct dig_rates    *rates;
 };
-
-enum dig_part_of_wrench { DIG_PART_MY, DIG_PART_FX, DIG_PART_FZ, DIG_PARTS };
 
 /// One solution. rest_Nm: drive, weight and inertia about each pin; minus the soil's moment there.
 /// Partials by the drives' moments. What could not be solved is 0.

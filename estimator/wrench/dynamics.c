@@ -65,8 +65,7 @@ void dig_dynamics_Nm(const struct dig_machine *const machine, const struct dig_f
                      double moment_Nm[DIG_JOINTS])
 {
     assert(machine != NULL && front != NULL && rates != NULL && moment_Nm != NULL);
-    const struct dig_vec2 gravity = { -DIG_GRAVITY_mps2 * sin(pitch_rad),
-                                      -DIG_GRAVITY_mps2 * cos(pitch_rad) };
+    const struct dig_vec2 gravity = dig_statics_gravity_mps2(pitch_rad);
     newton_euler(machine, front, rates->velocity_radps, rates->acceleration_radps2, gravity,
                  moment_Nm);
 }

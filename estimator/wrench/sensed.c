@@ -7,7 +7,6 @@
 #include <stddef.h>
 
 enum input { IN_FX, IN_FZ, IN_MY, IN_PHI, IN_PIN_X, IN_PIN_Z, IN_TURN, INPUTS };
-enum part { PART_FX, PART_FZ, PART_MY, PARTS };
 
 // The quantities with errors: the sensor's readings, the bucket's angle and the accelerations.
 struct inputs {
@@ -15,7 +14,7 @@ struct inputs {
 };
 
 struct parts {
-    double of[PARTS]; // of the soil, rig axes
+    double of[DIG_PARTS]; // of the soil, rig axes
 };
 
 // Rotates a vector from a frame whose +x stands at this angle.
@@ -52,8 +51,9 @@ static struct parts solve(const struct dig_machine *const machine, const double 
                            dig_vec2_cross(to_com, mass_N) + bucket->inertia_kgm2 * in[IN_TURN];
 
     // The rig's x is the machine's -X.
-    return (
-        struct parts){ .of = { [PART_FX] = -soil_N.x, [PART_FZ] = soil_N.y, [PART_MY] = soil_Nm } };
+    return (struct parts){
+        .of = { [DIG_PART_FX] = -soil_N.x, [DIG_PART_FZ] = soil_N.y, [DIG_PART_MY] = soil_Nm }
+    };
 }
 
 static enum dig_status take(const struct dig_machine *const       machine,
@@ -106,20 +106,20 @@ static enum dig_status take(const struct dig_machine *const       machine,
 // Adds the variance of the parts by one length or mass of `near` with this error.
 static void add_off(struct dig_machine *const near, double *const number, const double by,
                     const struct inputs *const in, const struct dig_vec2 gravity,
-                    const struct parts *const parts, double variance[const PARTS])
+                    const struct parts *const parts, double variance[const DIG_PARTS])
 {
     const double kept = *number;
     *number += by;
     const struct parts other = solve(near, in->value, 0.0, gravity);
     *number                  = kept;
-    for (int p = 0; p < PARTS; p++) {
+    for (int p = 0; p < DIG_PARTS; p++) {
         variance[p] += pow(other.of[p] - parts->of[p], 2.0);
     }
 }
 
 // Variance of the parts by the tolerances of the bucket and of the sensor's position.
 static void tolerate(const struct dig_machine *const machine, const struct inputs *const in,
-                     const struct dig_vec2 gravity, double variance[const PARTS])
+                     const struct dig_vec2 gravity, double variance[const DIG_PARTS])
 {
     const struct dig_tolerance *const tolerance = &machine->tolerance;
     struct dig_machine                near      = *machine;
@@ -150,9 +150,9 @@ static struct dig_wrench make_wrench(const struct dig_machine *const machine,
                                      const struct inputs *const in, const double turn_radps,
                                      const struct dig_vec2 gravity)
 {
-    const struct parts parts           = solve(machine, in->value, turn_radps, gravity);
-    double             variance[PARTS] = { 0.0 };
-    double             slow[PARTS]     = { 0.0 };
+    const struct parts parts               = solve(machine, in->value, turn_radps, gravity);
+    double             variance[DIG_PARTS] = { 0.0 };
+    double             slow[DIG_PARTS]     = { 0.0 };
     for (int i = 0; i < INPUTS; i++) {
         struct inputs more = *in;
         struct inputs less = *in;
@@ -161,32 +161,15 @@ static struct dig_wrench make_wrench(const struct dig_machine *const machine,
         less.value[i] -= h;
         const struct parts high = solve(machine, more.value, turn_radps, gravity);
         const struct parts low  = solve(machine, less.value, turn_radps, gravity);
-        for (int p = 0; p < PARTS; p++) {
+        for (int p = 0; p < DIG_PARTS; p++) {
             const double by = (high.of[p] - low.of[p]) / (2.0 * h);
             variance[p] += by * by * in->sigma[i] * in->sigma[i];
             slow[p] += by * by * in->slow[i] * in->slow[i];
         }
     }
-    double geometry[PARTS] = { 0.0 };
+    double geometry[DIG_PARTS] = { 0.0 };
     tolerate(machine, in, gravity, geometry);
-    return (struct dig_wrench){
-        .Fx_N             = parts.of[PART_FX],
-        .Fz_N             = parts.of[PART_FZ],
-        .My_Nm            = parts.of[PART_MY],
-        .sigma_Fx_N       = sqrt(variance[PART_FX]),
-        .sigma_Fz_N       = sqrt(variance[PART_FZ]),
-        .sigma_My_Nm      = sqrt(variance[PART_MY]),
-        .slow_sigma_Fx_N  = sqrt(slow[PART_FX]),
-        .slow_sigma_Fz_N  = sqrt(slow[PART_FZ]),
-        .slow_sigma_My_Nm = sqrt(slow[PART_MY]),
-
-        .geometry_sigma_Fx_N  = sqrt(geometry[PART_FX]),
-        .geometry_sigma_Fz_N  = sqrt(geometry[PART_FZ]),
-        .geometry_sigma_My_Nm = sqrt(geometry[PART_MY]),
-
-        .force_valid  = true,
-        .moment_valid = true,
-    };
+    return dig_wrench_of_parts(parts.of, variance, slow, geometry, true, true);
 }
 
 struct dig_sensed_motion dig_sensed_move(struct dig_rates_filter *const  filter,
@@ -227,8 +210,7 @@ enum dig_status dig_sensed_solve(const struct dig_machine *const       machine,
     if (status != DIG_OK) {
         return status;
     }
-    const struct dig_vec2 gravity = { -DIG_GRAVITY_mps2 * sin(pitch_rad),
-                                      -DIG_GRAVITY_mps2 * cos(pitch_rad) };
+    const struct dig_vec2 gravity = dig_statics_gravity_mps2(pitch_rad);
 
     const struct dig_vec2 pin    = { sample->value[DIG_SIGNAL_PIN_X_m],
                                      sample->value[DIG_SIGNAL_PIN_Z_m] };

@@ -20,4 +20,15 @@ struct dig_wrench {
     double geometry_sigma_Fx_N, geometry_sigma_Fz_N, geometry_sigma_My_Nm;
 };
 
+/// Its parts, where they are an array.
+enum dig_part_of_wrench { DIG_PART_MY, DIG_PART_FX, DIG_PART_FZ, DIG_PARTS };
+
+/// The wrench of its parts and their variances: of a sample, the slow part of that, and by
+/// tolerances. What is not valid is 0.
+struct dig_wrench dig_wrench_of_parts(const double part[DIG_PARTS],
+                                      const double variance[DIG_PARTS],
+                                      const double slow[DIG_PARTS],
+                                      const double geometry[DIG_PARTS], bool moment_valid,
+                                      bool force_valid);
+
 #endif // DIG_ESTIMATOR_WRENCH_SOIL_WRENCH_H

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
+static const double gravity_mps2 = 9.81;
+
 struct dig_front dig_front_place(const struct dig_machine *const machine,
                                  const double                    joint_rad[DIG_JOINTS])
 {
@@ -26,13 +28,17 @@ struct dig_front dig_front_place(const struct dig_machine *const machine,
     return front;
 }
 
+struct dig_vec2 dig_statics_gravity_mps2(const double pitch_rad)
+{
+    return (struct dig_vec2){ -gravity_mps2 * sin(pitch_rad), -gravity_mps2 * cos(pitch_rad) };
+}
+
 void dig_statics_weight_Nm(const struct dig_machine *const machine,
                            const struct dig_front *const front, const double pitch_rad,
                            double moment_Nm[DIG_JOINTS])
 {
     assert(machine != NULL && front != NULL && moment_Nm != NULL);
-    const struct dig_vec2 gravity = { -DIG_GRAVITY_mps2 * sin(pitch_rad),
-                                      -DIG_GRAVITY_mps2 * cos(pitch_rad) };
+    const struct dig_vec2 gravity = dig_statics_gravity_mps2(pitch_rad);
     for (int j = 0; j < DIG_JOINTS; j++) {
         double sum_Nm = 0.0;
         for (int k = j; k < DIG_JOINTS; k++) {

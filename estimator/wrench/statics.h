@@ -12,8 +12,6 @@
 #include "core/machine.h"
 #include "core/vec2.h"
 
-#define DIG_GRAVITY_mps2 9.81
-
 struct dig_front {
     double          attitude_rad[DIG_JOINTS]; // each link's +x against machine X
     struct dig_vec2 pin_m[DIG_JOINTS];        // boom foot (the origin), arm pin, bucket pin
@@ -23,6 +21,9 @@ struct dig_front {
 /// Places the links at the joint angles (boom, arm, bucket). Constant time.
 struct dig_front dig_front_place(const struct dig_machine *machine,
                                  const double              joint_rad[DIG_JOINTS]);
+
+/// Where a machine of this pitch is pulled to, by 1 kg.
+struct dig_vec2 dig_statics_gravity_mps2(double pitch_rad);
 
 /// Moment about pin j of the weight of every link beyond it: [bucket] the bucket's own weight about
 /// the bucket pin, [arm] arm and bucket about the arm pin, [boom] all about the boom foot, Nm.

@@ -77,8 +77,7 @@ static void add_weights(const struct dig_machine *const machine, const double pi
                         const struct dig_front *const   front,
                         const struct dig_balance *const balance, double variance[const DIG_PARTS])
 {
-    const struct dig_vec2 gravity = { -DIG_GRAVITY_mps2 * sin(pitch_rad),
-                                      -DIG_GRAVITY_mps2 * cos(pitch_rad) };
+    const struct dig_vec2 gravity = dig_statics_gravity_mps2(pitch_rad);
     for (int k = 0; k < DIG_JOINTS; k++) {
         const struct dig_link *const link   = &machine->link[k];
         const double                 off_kg = machine->tolerance.mass_share * link->mass_kg;

@@ -135,34 +135,6 @@ static bool is_trusted(const struct dig_machine *const  machine,
            dig_cylinder_is_clear(&machine->cylinder[j], balance->lever[j].length_m);
 }
 
-static struct dig_wrench finish(const struct dig_balance *const balance,
-                                const struct variance *const    variance,
-                                const double geometry[const DIG_PARTS], const bool moment_valid,
-                                const bool force_valid)
-{
-    struct dig_wrench w = { .moment_valid = moment_valid, .force_valid = force_valid };
-    if (moment_valid) {
-        w.My_Nm            = balance->part[DIG_PART_MY];
-        w.sigma_My_Nm      = sqrt(variance->all[DIG_PART_MY]);
-        w.slow_sigma_My_Nm = sqrt(variance->slow[DIG_PART_MY]);
-
-        w.geometry_sigma_My_Nm = sqrt(geometry[DIG_PART_MY]);
-    }
-    if (force_valid) {
-        w.Fx_N       = balance->part[DIG_PART_FX];
-        w.Fz_N       = balance->part[DIG_PART_FZ];
-        w.sigma_Fx_N = sqrt(variance->all[DIG_PART_FX]);
-        w.sigma_Fz_N = sqrt(variance->all[DIG_PART_FZ]);
-
-        w.slow_sigma_Fx_N = sqrt(variance->slow[DIG_PART_FX]);
-        w.slow_sigma_Fz_N = sqrt(variance->slow[DIG_PART_FZ]);
-
-        w.geometry_sigma_Fx_N = sqrt(geometry[DIG_PART_FX]);
-        w.geometry_sigma_Fz_N = sqrt(geometry[DIG_PART_FZ]);
-    }
-    return w;
-}
-
 // All variances; false when a pose within the errors cannot be solved.
 static void add_variances(const struct dig_machine *const  machine,
                           const struct dig_readings *const readings,
@@ -207,9 +179,10 @@ static enum dig_status solve(const struct dig_machine *const    machine,
     const bool bucket = is_trusted(machine, &readings, &balance, DIG_JOINT_BUCKET);
     const bool others = is_trusted(machine, &readings, &balance, DIG_JOINT_BOOM) &&
                         is_trusted(machine, &readings, &balance, DIG_JOINT_ARM);
-    *wrench = finish(&balance, &variance, geometry, balance.moment_ok && bucket,
-                     balance.force_ok && bucket && others);
-    *front  = placed;
+    *wrench =
+        dig_wrench_of_parts(balance.part, variance.all, variance.slow, geometry,
+                            balance.moment_ok && bucket, balance.force_ok && bucket && others);
+    *front = placed;
     return DIG_OK;
 }
 
@@ -224,22 +197,10 @@ enum dig_status dig_wrench_solve(const struct dig_machine *const machine,
 enum dig_status dig_wrench_correct(const struct dig_machine *const    corrected,
                                    const struct dig_correction *const correction,
                                    const struct dig_sample *const     sample,
-                                   const struct dig_rates *const      rates,
+                                   const struct dig_rates *const rates, const bool with_sigma,
                                    struct dig_wrench *const wrench, struct dig_front *const front)
 {
     assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
     assert(wrench != NULL && front != NULL);
-    return solve(corrected, correction, sample, rates, true, wrench, front);
-}
-
-enum dig_status dig_wrench_without_sigma(const struct dig_machine *const    corrected,
-                                         const struct dig_correction *const correction,
-                                         const struct dig_sample *const     sample,
-                                         const struct dig_rates *const      rates,
-                                         struct dig_wrench *const           wrench,
-                                         struct dig_front *const            front)
-{
-    assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
-    assert(wrench != NULL && front != NULL);
-    return solve(corrected, correction, sample, rates, false, wrench, front);
+    return solve(corrected, correction, sample, rates, with_sigma, wrench, front);
 }

@@ -43,18 +43,11 @@ DIG_MUST_CHECK enum dig_status dig_wrench_solve(const struct dig_machine *machin
 /// The same for a corrected machine, with weight and inertia subtracted: corrected is
 /// dig_correction_machine() of the same correction, which may be zero. The front is placed at the
 /// time of the pressures, delay_s before the sample's angles. sigma includes the rates' noise
-/// through friction and inertia.
+/// through friction and inertia. Without sigmas (0) values and flags are the same to the bit, for a
+/// third of the work.
 DIG_MUST_CHECK enum dig_status
 dig_wrench_correct(const struct dig_machine *corrected, const struct dig_correction *correction,
-                   const struct dig_sample *sample, const struct dig_rates *rates,
+                   const struct dig_sample *sample, const struct dig_rates *rates, bool with_sigma,
                    struct dig_wrench *wrench, struct dig_front *front);
-
-/// The same without sigmas (0): values and flags are the same to the bit. A third of the work.
-DIG_MUST_CHECK enum dig_status dig_wrench_without_sigma(const struct dig_machine    *corrected,
-                                                        const struct dig_correction *correction,
-                                                        const struct dig_sample     *sample,
-                                                        const struct dig_rates      *rates,
-                                                        struct dig_wrench           *wrench,
-                                                        struct dig_front            *front);
 
 #endif // DIG_ESTIMATOR_WRENCH_WRENCH_H

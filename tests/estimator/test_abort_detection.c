@@ -6,7 +6,6 @@
 #include "tests/testlib.h"
 
 static const double limit_m = 0.008;
-static const double tie_m   = 0.001;
 static const double step_m  = 0.0005;
 
 // 30 mm down, 90 mm along, 40 mm up, or the last 40 mm down.
@@ -60,7 +59,7 @@ static int left_of(const struct dug *const dug, const size_t routes,
     for (size_t r = 0; r < routes; r++) {
         whole[r] = dig_track_fit(&route[r], &dug->path, limit_m);
     }
-    return dig_abort_detection_choose(routes, route, &dug->path, limit_m, tie_m, whole, departure);
+    return dig_abort_detection_choose(routes, route, &dug->path, limit_m, whole, departure);
 }
 
 static bool left(const struct dug *const dug)

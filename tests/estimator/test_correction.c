@@ -22,7 +22,7 @@ static void expect_load(const struct dig_machine *const file, const struct dig_c
     struct dig_wrench        w;
     struct dig_front         front;
     assert_int_equal(dig_correction_check(file, c), DIG_OK);
-    assert_int_equal(dig_wrench_correct(&corrected, c, sample, rates, &w, &front), DIG_OK);
+    assert_int_equal(dig_wrench_correct(&corrected, c, sample, rates, true, &w, &front), DIG_OK);
     assert_true(w.moment_valid && w.force_valid);
     assert_close(w.My_Nm, load.M_Nm, tolerance);
     assert_close(w.Fx_N, -load.FX_N, tolerance);
@@ -53,7 +53,7 @@ static void nothing_corrected_at_rest_is_the_plain_wrench(void **state)
     struct dig_front            front;
     assert_true(dig_correction_is_none(&none));
     assert_int_equal(dig_wrench_solve(&machine, &sample, &plain, &front), DIG_OK);
-    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still, &corrected, &front),
+    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still, true, &corrected, &front),
                      DIG_OK);
     assert_close(corrected.My_Nm, plain.My_Nm, 1e-6);
     assert_close(corrected.Fx_N, plain.Fx_N, 1e-6);
@@ -139,7 +139,7 @@ static void moved_pins_leave_the_stops_where_they_are(void **state)
         arm->min_length_m                  = lever.length_m - clear_m;
         arm->max_length_m                  = lever.length_m + clear_m;
         const struct dig_machine corrected = dig_correction_machine(&machine, &moved);
-        assert_int_equal(dig_wrench_correct(&corrected, &moved, &sample, &still, &w, &front),
+        assert_int_equal(dig_wrench_correct(&corrected, &moved, &sample, &still, true, &w, &front),
                          DIG_OK);
         assert_true(w.moment_valid);
         assert_int_equal(w.force_valid, !at_stop);
@@ -182,8 +182,10 @@ static void noise_of_the_rates_widens_sigma(void **state)
     const struct dig_rates      noisy   = { .acceleration_sigma = 0.5 };
     struct dig_wrench           calm, shaken;
     struct dig_front            front;
-    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still, &calm, &front), DIG_OK);
-    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &noisy, &shaken, &front), DIG_OK);
+    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still, true, &calm, &front),
+                     DIG_OK);
+    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &noisy, true, &shaken, &front),
+                     DIG_OK);
     // All joints' accelerations turn the bucket: each adds its part.
     uint64_t seed = 3;
     double   sum2 = 0.0;
@@ -193,7 +195,8 @@ static void noise_of_the_rates_widens_sigma(void **state)
             r.acceleration_radps2[j] = 0.5 * model_normal(&seed);
         }
         struct dig_wrench w;
-        assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &r, &w, &front), DIG_OK);
+        assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &r, true, &w, &front),
+                         DIG_OK);
         sum2 += pow(w.My_Nm - calm.My_Nm, 2.0);
     }
     const double expected = hypot(calm.sigma_My_Nm, sqrt(sum2 / 4000));
@@ -223,13 +226,13 @@ static void without_sigmas_the_same_is_told(void **state)
         sample.value[DIG_SIGNAL_ARM_rad]    = -2.8 + 3.0 * (double)(i / STEPS) / STEPS;
         sample.value[DIG_SIGNAL_BUCKET_rad] = -3.0 + 6.0 * (double)(i % STEPS) / STEPS;
         rough.angle_sigma_rad               = 1e-6;
-        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, &sharp, &front[0]),
+        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, true, &sharp, &front[0]),
                          DIG_OK);
         rough.angle_sigma_rad = 0.1;
-        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, &told[0], &front[0]),
+        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, true, &told[0], &front[0]),
                          DIG_OK);
-        assert_int_equal(dig_wrench_without_sigma(&rough, &c, &sample, &rates, &told[1], &front[1]),
-                         DIG_OK);
+        assert_int_equal(
+            dig_wrench_correct(&rough, &c, &sample, &rates, false, &told[1], &front[1]), DIG_OK);
         assert_memory_equal(&front[0], &front[1], sizeof front[0]);
         assert_int_equal(told[0].moment_valid, told[1].moment_valid);
         assert_int_equal(told[0].force_valid, told[1].force_valid);

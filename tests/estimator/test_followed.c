@@ -6,7 +6,6 @@
 #include "tests/testlib.h"
 
 static const double limit_m = 0.008;
-static const double tie_m   = 0.001;
 
 // 100 mm along, then 100 mm up or down.
 static struct dig_route legs(const double then_m)
@@ -57,7 +56,7 @@ static struct followed_dig give_up(const double until, const double away_m)
 static bool gave_up(const struct followed_dig *const dig)
 {
     const struct dig_route routes[] = { legs(0.1), legs(-0.1) };
-    return dig_followed_was_aborted(&dig->followed, 2, routes, &dig->path, limit_m, tie_m);
+    return dig_followed_was_aborted(&dig->followed, 2, routes, &dig->path, limit_m);
 }
 
 static void what_left_the_path_it_was_on_gave_up(void **state)

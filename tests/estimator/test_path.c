@@ -8,7 +8,6 @@
 
 static const double tooth_m = 0.09;
 static const double limit_m = 0.008;
-static const double tie_m   = 0.001;
 
 // How a dig is driven: where it starts, how late contact is noticed, what spoils it.
 struct drive {
@@ -64,7 +63,7 @@ static int choose(const struct dig_path *const path, struct dig_track fitted[MAD
         fitted[t]                              = dig_track_fit(&route, path, limit_m);
         track_of[t]                            = &fitted[t];
     }
-    return dig_track_choose(MADE_TRAJECTORIES, track_of, limit_m, tie_m, -1);
+    return dig_track_choose(MADE_TRAJECTORIES, track_of, limit_m, -1);
 }
 
 // Wherever the ground lies, however late contact was noticed (up to the whole first leg), with ten
@@ -130,9 +129,9 @@ static void what_two_trajectories_share_is_not_known(void **state)
 
     // Who sits already keeps his seat while it is tied.
     const struct dig_track *track_of[] = { &fitted[0], &fitted[1], &fitted[2] };
-    assert_int_equal(dig_track_choose(3, track_of, limit_m, tie_m, MADE_ACTUAL), MADE_ACTUAL);
-    assert_int_equal(dig_track_choose(3, track_of, limit_m, tie_m, MADE_SIMPLE_B), MADE_SIMPLE_B);
-    assert_int_equal(dig_track_choose(3, track_of, limit_m, tie_m, MADE_SIMPLE_A), -1);
+    assert_int_equal(dig_track_choose(3, track_of, limit_m, MADE_ACTUAL), MADE_ACTUAL);
+    assert_int_equal(dig_track_choose(3, track_of, limit_m, MADE_SIMPLE_B), MADE_SIMPLE_B);
+    assert_int_equal(dig_track_choose(3, track_of, limit_m, MADE_SIMPLE_A), -1);
 }
 
 static void a_path_that_is_none_of_them_is_not_known(void **state)
