@@ -58,7 +58,7 @@ closed_loop/model      | candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs
 closed_loop/machine    machine_check machine_side | machine_lines machine_motion machine_side_private
 closed_loop/search     | cross_validation portmanteau search search_work unlisted
-closed_loop/accuracy   coverage score | before_after decision effect_size judge trend
+closed_loop/accuracy   coverage score | decision effect_size judge trend
 closed_loop/verdict    trace | residuals tell_apart
 closed_loop/design     design
 closed_loop/report     design_report html json machine_check_report plot report trace_report

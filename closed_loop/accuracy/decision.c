@@ -1,6 +1,5 @@
 #include "closed_loop/accuracy/decision.h"
 
-#include "closed_loop/accuracy/judge.h"
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/features.h"
 

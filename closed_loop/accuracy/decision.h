@@ -5,9 +5,7 @@
 #ifndef DIG_CLOSED_LOOP_ACCURACY_DECISION_H
 #define DIG_CLOSED_LOOP_ACCURACY_DECISION_H
 
-#include "closed_loop/accuracy/before_after.h"
-#include "closed_loop/model/scatter.h"
-#include "closed_loop/recordings/measured.h"
+#include "closed_loop/accuracy/judge.h"
 
 /// The chance that the curves after are further from the next dig than those before, were they
 /// exactly its mean: a mean over these digs. A change d of the moment makes a dig that scatters by

@@ -3,11 +3,21 @@
 #ifndef DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
 #define DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
 
-#include "closed_loop/accuracy/before_after.h"
 #include "closed_loop/model/scatter.h"
 #include "closed_loop/recordings/measured.h"
 
 #include <stdint.h>
+
+/// Error with its 90 % bootstrap interval over recordings.
+struct dig_error_range {
+    double value, low, high;
+};
+
+/// Curves of one dig for the report.
+struct dig_trace_curves {
+    double before[DIG_CHANNELS][DIG_CURVE_POINTS], before_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+    double after[DIG_CHANNELS][DIG_CURVE_POINTS], after_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+};
 
 /// 1 sigma of one dig about a predicted curve: the table's own relative scatter at each point, at
 /// the size and strength of the gravel at place; noise: variance of the prediction itself, in those

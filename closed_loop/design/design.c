@@ -15,8 +15,7 @@ struct dig_design_settings dig_design_settings_default(void)
 }
 
 // Gravels to average over, away from the table's edge; an axis of one point has one place.
-static size_t make_places(const struct dig_response_surface *const surface,
-                          double                                   place[][DIG_AXES])
+static void make_places(struct dig_design_table *const table)
 {
     size_t n = 0;
     for (size_t i = 0; i < DIG_DESIGN_PLACES_MAX; i++) {
@@ -25,31 +24,29 @@ static size_t make_places(const struct dig_response_surface *const surface,
                                       i % DIG_DESIGN_PLACES_PER_AXIS };
         bool         is_new       = true;
         for (int a = 0; a < DIG_AXES; a++) {
-            const bool has = surface->set->axis_count[a] > 1;
+            const bool has = table->surface->set->axis_count[a] > 1;
             is_new         = is_new && (has || at[a] == 0);
-            place[n][a] =
+            table->place[n][a] =
                 has ? 2.0 * ((double)at[a] + 0.5) / (double)DIG_DESIGN_PLACES_PER_AXIS - 1.0 : 0.0;
         }
         n += is_new ? 1 : 0;
     }
-    return n;
+    table->places = n;
 }
 
 // The gravel: information of one dig by moment and by wrench, what is left of each axis.
-static enum dig_status weigh_gravel(const struct dig_response_surface *const surface,
-                                    const struct dig_scatter *const scatter, const size_t t,
-                                    const size_t places, double place[][DIG_AXES],
+static enum dig_status weigh_gravel(const struct dig_design_table *const table, const size_t t,
                                     double (*const normal)[DIG_AXES * DIG_AXES],
                                     struct dig_design_dig *const dig)
 {
-    double left[DIG_AXES][DIG_DESIGN_PLACES_MAX];
+    const size_t places = table->places;
+    double       left[DIG_AXES][DIG_DESIGN_PLACES_MAX];
     for (size_t i = 0; i < places; i++) {
         struct dig_design_view v;
-        enum dig_status        status =
-            dig_design_look(surface, scatter, t, place[i], DIG_DESIGN_WRENCH, &v);
+        enum dig_status status = dig_design_look(table, t, table->place[i], DIG_DESIGN_WRENCH, &v);
         if (status == DIG_OK) {
             dig->bits_wrench += dig_design_bits(v.normal) / (double)places;
-            status = dig_design_look(surface, scatter, t, place[i], DIG_FEATURE_BINS, &v);
+            status = dig_design_look(table, t, table->place[i], DIG_FEATURE_BINS, &v);
         }
         if (status != DIG_OK) {
             return status;
@@ -119,13 +116,10 @@ static enum dig_status rank(const struct dig_curve_set *const set, struct dig_de
     return design->ranked > 0 ? DIG_OK : DIG_EINVAL;
 }
 
-static enum dig_status weigh_all(const struct dig_response_surface *const surface,
-                                 const struct dig_scatter *const          scatter,
-                                 const struct dig_soil *const soil, struct dig_design *const design)
+static enum dig_status weigh_all(const struct dig_design_table *const table,
+                                 struct dig_design *const             design)
 {
-    const struct dig_curve_set *const set = surface->set;
-    double                            place[DIG_DESIGN_PLACES_MAX + 1][DIG_AXES];
-    const size_t                      places = make_places(surface, place);
+    const struct dig_curve_set *const set = table->surface->set;
     double(*const normal)[DIG_DESIGN_PLACES_MAX][DIG_AXES * DIG_AXES] =
         calloc(DIG_TRAJECTORY_MAX, sizeof *normal);
     if (normal == NULL) {
@@ -135,20 +129,19 @@ static enum dig_status weigh_all(const struct dig_response_surface *const surfac
     design->digs           = set->trajectories;
     for (size_t t = 0; t < set->trajectories && status == DIG_OK; t++) {
         struct dig_design_dig *const dig = &design->dig[t];
-        dig->known                       = surface->known[t];
+        dig->known                       = table->surface->known[t];
         dig->simple                      = set->trajectory[t].phases <= DIG_DESIGN_SIMPLE_PHASES;
         dig->duration_s                  = dig_trajectory_duration_s(&set->trajectory[t]);
         dig->path_m = dig_trajectory_path_m(&set->trajectory[t], set->tooth_m, dig->duration_s);
         if (dig->known) {
-            status = weigh_gravel(surface, scatter, t, places, place, normal[t], dig);
+            status = weigh_gravel(table, t, normal[t], dig);
         }
-        if (dig->known && status == DIG_OK && soil != NULL) {
-            status = dig_design_effects(surface, scatter, soil, t, places,
-                                        (const double(*)[DIG_AXES])place, dig);
+        if (dig->known && status == DIG_OK && table->soil != NULL) {
+            status = dig_design_effects(table, t, dig);
         }
     }
     if (status == DIG_OK) {
-        find_partners(design, places, normal);
+        find_partners(design, table->places, normal);
         status = rank(set, design);
     }
     free(normal);
@@ -162,13 +155,15 @@ enum dig_status dig_design_run(const struct dig_response_surface *const surface,
                                struct dig_design *const                 design)
 {
     assert(surface != NULL && scatter != NULL && settings != NULL && design != NULL);
+    struct dig_design_table  table  = { .surface = surface, .scatter = scatter, .soil = soil };
     struct dig_design *const d      = calloc(1, sizeof *d);
     enum dig_status          status = d != NULL ? DIG_OK : DIG_ENOMEM;
+    make_places(&table);
     if (status == DIG_OK) {
-        status = weigh_all(surface, scatter, soil, d);
+        status = weigh_all(&table, d);
     }
     if (status == DIG_OK) {
-        status = dig_design_simulate(surface, scatter, settings, d);
+        status = dig_design_simulate(&table, settings, d);
     }
     if (status == DIG_OK) {
         *design = *d;

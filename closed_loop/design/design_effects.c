@@ -12,16 +12,17 @@ static const double magnitude  = 0.5; // of an effect, of the largest in the tab
 static const double apart_from = 2.0; // sigmas
 
 // What an effect adds at one gravel, whitened and without what the gravel explains.
-static void remainder_of(const struct dig_response_surface *const surface,
-                         const struct dig_soil *const soil, const enum dig_effect_id effect,
-                         const size_t t, const double place[DIG_AXES],
-                         const struct dig_design_view *const v, double d[])
+static void remainder_of(const struct dig_design_table *const table,
+                         const enum dig_effect_id effect, const size_t t,
+                         const double place[DIG_AXES], const struct dig_design_view *const v,
+                         double d[])
 {
-    double plain[DIG_FEATURES];
-    double with[DIG_FEATURES];
-    double amplitude[DIG_FORCE_CHANNELS];
-    double noise = 0.0;
-    dig_response_surface_features(surface, t, place, plain, amplitude);
+    const struct dig_soil *const soil = table->soil;
+    double                       plain[DIG_FEATURES];
+    double                       with[DIG_FEATURES];
+    double                       amplitude[DIG_FORCE_CHANNELS];
+    double                       noise = 0.0;
+    dig_response_surface_features(table->surface, t, place, plain, amplitude);
     memcpy(with, plain, sizeof with);
     dig_soil_add(soil, effect, t, place, magnitude * soil->high[effect], 1.0, 1.0, plain, amplitude,
                  with, &noise);
@@ -50,16 +51,14 @@ static double differ(const size_t n, const double a[], const double b[])
     return sqrt(sum);
 }
 
-static void weigh_place(const struct dig_response_surface *const surface,
-                        const struct dig_soil *const soil, const size_t t,
-                        const double place[DIG_AXES], const size_t i,
+static void weigh_place(const struct dig_design_table *const table, const size_t t, const size_t i,
                         const struct dig_design_view *const v,
                         const struct dig_design_dig *const dig, struct sigmas *const s)
 {
     double d[DIG_EFFECTS][DIG_FEATURES];
     for (int e = 0; e < DIG_EFFECTS; e++) {
         if (dig->tells[e]) {
-            remainder_of(surface, soil, (enum dig_effect_id)e, t, place, v, d[e]);
+            remainder_of(table, (enum dig_effect_id)e, t, table->place[i], v, d[e]);
             s->alone[e][i] = sqrt(dig_design_product(v->n, d[e], d[e]));
         }
     }
@@ -94,31 +93,28 @@ static void take_medians(const size_t places, struct sigmas *const s,
     }
 }
 
-enum dig_status dig_design_effects(const struct dig_response_surface *const surface,
-                                   const struct dig_scatter *const          scatter,
-                                   const struct dig_soil *const soil, const size_t t,
-                                   const size_t places, const double place[][DIG_AXES],
+enum dig_status dig_design_effects(const struct dig_design_table *const table, const size_t t,
                                    struct dig_design_dig *const dig)
 {
     // Those that act on each dig otherwise need several digs.
     for (int e = 0; e < DIG_EFFECTS; e++) {
         dig->tells[e] = !dig_effect_is_by_dig((enum dig_effect_id)e) &&
-                        dig_soil_knows(soil, (enum dig_effect_id)e, t);
+                        dig_soil_knows(table->soil, (enum dig_effect_id)e, t);
     }
     struct sigmas *const s = calloc(1, sizeof *s);
     if (s == NULL) {
         return DIG_ENOMEM;
     }
     enum dig_status status = DIG_OK;
-    for (size_t i = 0; i < places && status == DIG_OK; i++) {
+    for (size_t i = 0; i < table->places && status == DIG_OK; i++) {
         struct dig_design_view v;
-        status = dig_design_look(surface, scatter, t, place[i], DIG_DESIGN_WRENCH, &v);
+        status = dig_design_look(table, t, table->place[i], DIG_DESIGN_WRENCH, &v);
         if (status == DIG_OK) {
-            weigh_place(surface, soil, t, place[i], i, &v, dig, s);
+            weigh_place(table, t, i, &v, dig, s);
         }
     }
     if (status == DIG_OK) {
-        take_medians(places, s, dig);
+        take_medians(table->places, s, dig);
     }
     free(s);
     return status;

@@ -12,22 +12,28 @@
 enum { N = DIG_FEATURE_BINS, STEPS_FRICTION = 11, STEPS_ROLLING = 11, STEPS_DENSITY = 7 };
 #define GRID ((size_t)STEPS_FRICTION * STEPS_ROLLING * STEPS_DENSITY)
 
-void dig_design_covariance(const struct dig_response_surface *const surface,
-                           const struct dig_scatter *const scatter, const size_t trajectory,
+// One dig's scatter at a place, in the table's own.
+static double factor_at(const struct dig_design_table *const table, const size_t trajectory,
+                        const double place[DIG_AXES], const double amplitude[DIG_FORCE_CHANNELS])
+{
+    return dig_scatter_factor(table->scatter, trajectory,
+                              dig_soil_strength(table->surface, place, amplitude));
+}
+
+void dig_design_covariance(const struct dig_design_table *const table, const size_t trajectory,
                            const double place[DIG_AXES], const size_t n, double covariance[])
 {
-    assert(surface != NULL && scatter != NULL && n <= (size_t)DIG_FEATURES);
+    assert(table != NULL && n <= (size_t)DIG_FEATURES);
     double feature[DIG_FEATURES];
     double amplitude[DIG_FORCE_CHANNELS];
-    dig_response_surface_features(surface, trajectory, place, feature, amplitude);
-    const double factor =
-        dig_scatter_factor(scatter, trajectory, dig_soil_strength(surface, place, amplitude));
-    const double all = factor * (1.0 + dig_response_surface_noise(surface, trajectory, place));
+    dig_response_surface_features(table->surface, trajectory, place, feature, amplitude);
+    const double all = factor_at(table, trajectory, place, amplitude) *
+                       (1.0 + dig_response_surface_noise(table->surface, trajectory, place));
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) {
             covariance[i * n + j] = all * amplitude[i / DIG_FEATURE_BINS] *
                                     amplitude[j / DIG_FEATURE_BINS] *
-                                    scatter->covariance[trajectory][i][j];
+                                    table->scatter->covariance[trajectory][i][j];
         }
     }
 }
@@ -40,8 +46,7 @@ struct node {
     double log_det;
 };
 
-static enum dig_status fill_nodes(const struct dig_response_surface *const surface,
-                                  const struct dig_scatter *const scatter, const size_t t,
+static enum dig_status fill_nodes(const struct dig_design_table *const table, const size_t t,
                                   struct node node[])
 {
     for (size_t i = 0; i < GRID; i++) {
@@ -54,9 +59,9 @@ static enum dig_status fill_nodes(const struct dig_response_surface *const surfa
         for (int a = 0; a < DIG_AXES; a++) {
             node[i].place[a] = 2.0 * ((double)at[a] + 0.5) / steps[a] - 1.0;
         }
-        dig_response_surface_features(surface, t, node[i].place, feature, amplitude);
+        dig_response_surface_features(table->surface, t, node[i].place, feature, amplitude);
         memcpy(node[i].mean, feature, sizeof node[i].mean);
-        dig_design_covariance(surface, scatter, t, node[i].place, N, node[i].lower);
+        dig_design_covariance(table, t, node[i].place, N, node[i].lower);
         if (dig_cholesky(N, node[i].lower) != DIG_OK) {
             return DIG_EINVAL;
         }
@@ -66,24 +71,23 @@ static enum dig_status fill_nodes(const struct dig_response_surface *const surfa
 }
 
 // One dig of the gravel at this place: the table's mean and a packing's residual.
-static void draw_dig(const struct dig_response_surface *const surface,
-                     const struct dig_scatter *const scatter, const size_t t,
+static void draw_dig(const struct dig_design_table *const table, const size_t t,
                      const double place[DIG_AXES], uint64_t *const seed, double y[N])
 {
-    double feature[DIG_FEATURES];
-    double amplitude[DIG_FORCE_CHANNELS];
-    double noise[N] = { 0.0 };
-    dig_response_surface_features(surface, t, place, feature, amplitude);
+    const struct dig_scatter *const scatter = table->scatter;
+    double                          feature[DIG_FEATURES];
+    double                          amplitude[DIG_FORCE_CHANNELS];
+    double                          noise[N] = { 0.0 };
+    dig_response_surface_features(table->surface, t, place, feature, amplitude);
     if (scatter->residuals[t] > 0) {
-        const size_t i = dig_chance_index(seed, scatter->residuals[t]);
-        const double factor =
-            dig_scatter_factor(scatter, t, dig_soil_strength(surface, place, amplitude));
+        const size_t i      = dig_chance_index(seed, scatter->residuals[t]);
+        const double factor = factor_at(table, t, place, amplitude);
         for (size_t k = 0; k < N; k++) {
             noise[k] = sqrt(factor) * amplitude[DIG_CHANNEL_MY_Nm] * scatter->residual[t][i][k];
         }
     } else {
         double lower[N * N];
-        dig_design_covariance(surface, scatter, t, place, N, lower);
+        dig_design_covariance(table, t, place, N, lower);
         for (size_t k = 0; k < N; k++) {
             noise[k] = dig_chance_normal(seed);
         }
@@ -211,11 +215,11 @@ static void draw_place(const struct dig_response_surface *const surface, const u
     }
 }
 
-enum dig_status dig_design_simulate(const struct dig_response_surface *const surface,
-                                    const struct dig_scatter *const          scatter,
-                                    const struct dig_design_settings *const  settings,
-                                    struct dig_design *const                 design)
+enum dig_status dig_design_simulate(const struct dig_design_table *const    table,
+                                    const struct dig_design_settings *const settings,
+                                    struct dig_design *const                design)
 {
+    const struct dig_response_surface *const surface = table->surface;
     assert(design->ranked > 0 && settings->draws > 0);
     const size_t       digs   = design->digs;
     struct node *const node   = calloc(GRID, sizeof *node);
@@ -227,13 +231,13 @@ enum dig_status dig_design_simulate(const struct dig_response_surface *const sur
             continue;
         }
         uint64_t seed = settings->seed + t;
-        status        = fill_nodes(surface, scatter, t, node);
+        status        = fill_nodes(table, t, node);
         for (size_t i = 0; i < settings->draws && status == DIG_OK; i++) {
             double is[DIG_AXES];
             double found[DIG_AXES];
             double y[N];
             draw_place(surface, settings->seed, i, is);
-            draw_dig(surface, scatter, t, is, &seed, y);
+            draw_dig(table, t, is, &seed, y);
             identify(node, y, found);
             square[i * digs + t] = take_error(surface, is, found, dig);
             dig->target_error += target_square(surface, design->target, is, found);

@@ -16,15 +16,14 @@ double dig_design_product(const size_t n, const double a[], const double b[])
     return sum;
 }
 
-enum dig_status dig_design_look(const struct dig_response_surface *const surface,
-                                const struct dig_scatter *const scatter, const size_t t,
+enum dig_status dig_design_look(const struct dig_design_table *const table, const size_t t,
                                 const double place[DIG_AXES], const size_t n,
                                 struct dig_design_view *const v)
 {
     double feature[2][DIG_FEATURES];
     double amplitude[DIG_FORCE_CHANNELS];
     v->n = n;
-    dig_design_covariance(surface, scatter, t, place, n, v->lower);
+    dig_design_covariance(table, t, place, n, v->lower);
     if (dig_cholesky(n, v->lower) != DIG_OK) {
         return DIG_EINVAL;
     }
@@ -33,7 +32,7 @@ enum dig_status dig_design_look(const struct dig_response_surface *const surface
             double at[DIG_AXES];
             memcpy(at, place, sizeof at);
             at[a] += side == 0 ? -step : step;
-            dig_response_surface_features(surface, t, at, feature[side], amplitude);
+            dig_response_surface_features(table->surface, t, at, feature[side], amplitude);
         }
         for (size_t k = 0; k < n; k++) {
             v->slope[a][k] = (feature[1][k] - feature[0][k]) / (2.0 * step);

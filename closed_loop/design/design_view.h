@@ -12,10 +12,18 @@
 #define DIG_DESIGN_PLACES_MAX      64
 #define DIG_DESIGN_PRIOR           3.0 // 1 / variance of a place of which nothing is known
 
+/// What a design is of, and the gravels to average over.
+struct dig_design_table {
+    const struct dig_response_surface *surface;
+    const struct dig_scatter          *scatter;
+    const struct dig_soil             *soil; // NULL: nothing about effects
+    size_t                             places;
+    double                             place[DIG_DESIGN_PLACES_MAX + 1][DIG_AXES];
+};
+
 /// The covariance of one dig's features at a place, the table's own error included; row major, n by
 /// n, of the first n features (DIG_FEATURE_BINS: the moment's).
-void dig_design_covariance(const struct dig_response_surface *surface,
-                           const struct dig_scatter *scatter, size_t trajectory,
+void dig_design_covariance(const struct dig_design_table *table, size_t trajectory,
                            const double place[DIG_AXES], size_t n, double covariance[]);
 
 struct dig_design_view {
@@ -27,10 +35,9 @@ struct dig_design_view {
 };
 
 /// DIG_EINVAL: the covariance is none.
-DIG_MUST_CHECK enum dig_status dig_design_look(const struct dig_response_surface *surface,
-                                               const struct dig_scatter *scatter, size_t trajectory,
-                                               const double place[DIG_AXES], size_t n,
-                                               struct dig_design_view *view);
+DIG_MUST_CHECK enum dig_status dig_design_look(const struct dig_design_table *table,
+                                               size_t trajectory, const double place[DIG_AXES],
+                                               size_t n, struct dig_design_view *view);
 
 /// Bits that this much Fisher information is about the gravel.
 double dig_design_bits(const double normal[DIG_AXES * DIG_AXES]);
@@ -41,19 +48,15 @@ void dig_design_take_gravel_off(const struct dig_design_view *view, double d[]);
 double dig_design_product(size_t n, const double a[], const double b[]);
 
 /// Fills what *dig says of effects (design_effects.c).
-DIG_MUST_CHECK enum dig_status dig_design_effects(const struct dig_response_surface *surface,
-                                                  const struct dig_scatter          *scatter,
-                                                  const struct dig_soil *soil, size_t trajectory,
-                                                  size_t places, const double place[][DIG_AXES],
-                                                  struct dig_design_dig *dig);
+DIG_MUST_CHECK enum dig_status dig_design_effects(const struct dig_design_table *table,
+                                                  size_t trajectory, struct dig_design_dig *dig);
 
 /// Draws gravels evenly over the table, digs each along every trajectory with the scatter of the
 /// table's own packings, and identifies it from the moment by its posterior mean on a grid: how
 /// right the theory is. Fills the simulated members of *design, whose ranking stands
 /// (design_simulate.c).
-DIG_MUST_CHECK enum dig_status dig_design_simulate(const struct dig_response_surface *surface,
-                                                   const struct dig_scatter          *scatter,
-                                                   const struct dig_design_settings  *settings,
-                                                   struct dig_design                 *design);
+DIG_MUST_CHECK enum dig_status dig_design_simulate(const struct dig_design_table    *table,
+                                                   const struct dig_design_settings *settings,
+                                                   struct dig_design                *design);
 
 #endif // DIG_CLOSED_LOOP_DESIGN_DESIGN_VIEW_H

@@ -1,6 +1,14 @@
-#include "closed_loop/search/drift.h"
+// Whether digs drift from first to last as wear is taken to, by the same share from one to the
+// next.
+//
+// Of every dig the size that it has over the gravel's without wear, f = <y, m> / <m, m>, with a
+// variance of 1 / <m, m>, is fitted by a line and by a parabola in the digs' order; what the digs
+// of one trajectory share counts as its own unknown. A strength that grows and comes to rest, or
+// steps once, is a drift, too, but of something else than a tooth, and a line through it overshoots
+// the next dig.
 
 #include "closed_loop/numeric/dense.h"
+#include "closed_loop/search/search_work.h"
 
 #include <assert.h>
 #include <math.h>

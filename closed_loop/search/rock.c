@@ -73,8 +73,8 @@ static void describe(const struct room *const r, const size_t g, struct hump *co
 
 // What the rock adds where the tooth is at point k, when it lies so much further along. Nothing
 // where the tooth stands in x: what is lifted has left the rock behind.
-static void shifted(const struct hump *const hump, const size_t k, const double ahead_m,
-                    double more[DIG_FORCE_CHANNELS])
+static void shift(const struct hump *const hump, const size_t k, const double ahead_m,
+                  double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
     const double x_m    = hump->x_m[k] - ahead_m;
     const bool   stands = k > 0 && hump->x_m[k] - hump->x_m[k - 1] < 1e-9;
@@ -86,7 +86,7 @@ static void shifted(const struct hump *const hump, const size_t k, const double 
     const bool within = !stands && wide_m > 1e-9 && x_m >= hump->x_m[0] && x_m <= hump->x_m[j + 1];
     const double w    = within ? (x_m - hump->x_m[j]) / wide_m : 0.0;
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        more[c] = within ? (1.0 - w) * hump->more[c][j] + w * hump->more[c][j + 1] : 0.0;
+        curve[c][k] = within ? (1.0 - w) * hump->more[c][j] + w * hump->more[c][j + 1] : 0.0;
     }
 }
 
@@ -96,11 +96,7 @@ static void put_place(const struct room *const r, const double ahead_m, struct p
     for (size_t g = 0; g < r->batch->groups; g++) {
         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            double more[DIG_FORCE_CHANNELS];
-            shifted(&r->hump[g], k, ahead_m, more);
-            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                curve[c][k] = more[c];
-            }
+            shift(&r->hump[g], k, ahead_m, curve);
         }
         dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, p->feature[g]);
         dig_whitened_digs_whiten(&r->batch->group[g], p->feature[g], p->y[g]);
@@ -123,11 +119,16 @@ static void take_off(struct room *const r, const struct place *const p, const do
     dig_whitened_digs_summarise(&r->without);
 }
 
-static void model_of(const struct room *const r, const struct dig_fitted *const fitted,
-                     const size_t g, double y[DIG_FEATURES])
+// What a fit leaves of the mean dig of a group of the batch, or of it without the hump.
+static void rest_of(const struct room *const r, const struct dig_fitted *const fitted,
+                    const struct dig_whitened_digs *const batch, const size_t g,
+                    double rest[DIG_FEATURES])
 {
-    dig_hypothesis_whitened(r->soil, &fitted->hypothesis, fitted->number, &r->batch->group[g],
-                            dig_whitened_digs_first(r->batch, g), y);
+    dig_hypothesis_whitened(r->soil, &fitted->hypothesis, fitted->number, &batch->group[g],
+                            dig_whitened_digs_first(r->batch, g), rest);
+    for (size_t k = 0; k < batch->group[g].features; k++) {
+        rest[k] = batch->group[g].mean[k] - rest[k];
+    }
 }
 
 // The factors that leave least of the means beside the fitted gravel.
@@ -142,10 +143,7 @@ static void fit_factors(const struct room *const r, const struct place *const p,
         double                                      rest[DIG_FEATURES];
         double                                      hump[DIG_FEATURES];
         double                                      along = 0.0;
-        model_of(r, fitted, g, rest);
-        for (size_t k = 0; k < group->features; k++) {
-            rest[k] = group->mean[k] - rest[k];
-        }
+        rest_of(r, fitted, r->batch, g, rest);
         memcpy(hump, p->y[g], sizeof hump);
         (void)dig_common_error_squares(group, &error[g], rest);
         const double squares = dig_common_error_squares(group, &error[g], hump);
@@ -175,10 +173,7 @@ static void judge(const struct room *const r, const struct place *const p,
         const struct dig_whitened_digs_group *const group = &r->without.group[g];
         double                                      rest[DIG_FEATURES];
         double                                      again[DIG_FEATURES];
-        model_of(r, f, g, rest);
-        for (size_t k = 0; k < group->features; k++) {
-            rest[k] = group->mean[k] - rest[k];
-        }
+        rest_of(r, f, &r->without, g, rest);
         memcpy(again, rest, sizeof again);
         for (size_t i = 0; i < DIG_FEATURES; i++) {
             own[g].size[1][i] = unlikeness * rock->factor[g] * p->feature[g][i];

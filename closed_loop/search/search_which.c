@@ -1,7 +1,6 @@
 // Which effect, or which two: the best single effect, pairs beside it, and whether to believe them.
 
 #include "closed_loop/search/cross_validation.h"
-#include "closed_loop/search/drift.h"
 #include "closed_loop/search/search_work.h"
 
 #include <math.h>

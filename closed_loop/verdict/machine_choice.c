@@ -2,7 +2,7 @@
 //
 // The answers of free air (closed_loop/machine/machine_side.h), none, and "something without a
 // name" compete by one evidence: free air's, plus that of the digs fitted with what free air leaves
-// open of the answer (closed_loop/verdict/machine_steps.h). Both are of different samples, so their
+// open of the answer (closed_loop/verdict/machine_steps.c). Both are of different samples, so their
 // logarithms add up. The digs' is that of the best of a plain gravel, one effect of the soil, and a
 // soil without a name, so that neither side explains what is the other's. Under no effect the
 // evidence ratio has mean 1, and exceeds answers / level with a chance of at most the level
@@ -11,7 +11,6 @@
 #include "closed_loop/accuracy/effect_size.h"
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/search/search_work.h"
-#include "closed_loop/verdict/machine_steps.h"
 #include "closed_loop/verdict/trace_work.h"
 
 #include <assert.h>

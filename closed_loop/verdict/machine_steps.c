@@ -1,6 +1,14 @@
-#include "closed_loop/verdict/machine_steps.h"
+// A machine as free air leaves it open, as steps of a fit to the digs: the gain of a pressure
+// sensor, say, reads little in free air and much in a dig.
+//
+//   y(dig) = soil(dig) + middle(dig) + sum over k of z[k] D[k](dig),    z ~ N(0, 1)
+//
+// middle is what an answer's values add to a dig, D what a step from there adds
+// (closed_loop/machine/machine_side.h). Gravel, effects of the soil and z are then one fit:
+// closed_loop/fit/likelihood.h.
 
 #include "closed_loop/recordings/features.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "closed_loop/verdict/residual.h"
+#include "closed_loop/verdict/residuals.h"
 
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/regressors.h"

@@ -7,8 +7,22 @@
 #include "closed_loop/accuracy/trend.h"
 #include "closed_loop/recordings/regressors.h"
 #include "closed_loop/search/portmanteau.h"
-#include "closed_loop/verdict/residual.h"
 #include "closed_loop/verdict/trace_work.h"
+
+/// Of one channel in one part of a dig; all NaN where nothing was measured. relative adds up in
+/// squares over the parts: of the moment the sum's root is CONTRACT's error of this dig.
+struct dig_residual {
+    double rms; // N m or N
+    double
+        relative;  // sqrt(integral of its square over the part / of the measured one's, whole dig)
+    double sigmas; // rms of it over 1 sigma of one dig about the prediction, sensors included
+};
+
+/// By the curves before or after, of enum dig_part DIG_PART_SOIL and DIG_PART_LIFTED; that of the
+/// air is all NaN.
+void dig_residual_of(const struct dig_curve_set *set, const struct dig_measured *dig,
+                     const struct dig_trace_curves *curves, bool after,
+                     struct dig_residual residual[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS]);
 
 struct dig_residuals_dig {
     char         name[64];

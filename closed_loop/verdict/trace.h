@@ -4,7 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_VERDICT_TRACE_H
 #define DIG_CLOSED_LOOP_VERDICT_TRACE_H
 
-#include "closed_loop/accuracy/before_after.h"
+#include "closed_loop/accuracy/judge.h"
 #include "closed_loop/model/candidate.h"
 #include "closed_loop/recordings/measured.h"
 #include "core/curve.h"

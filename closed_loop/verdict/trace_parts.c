@@ -12,6 +12,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void add_parameter(const char *const name, const double value, const double low,
+                          const double high, struct dig_model_effect *const made)
+{
+    struct dig_model_parameter *const to = &made->parameter[made->parameters++];
+    (void)snprintf(to->name, sizeof to->name, "%s", name);
+    to->value = value;
+    to->low   = low;
+    to->high  = high;
+}
+
 struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
                                          const struct dig_fitted *const fitted, const size_t effect,
                                          const double probability)
@@ -19,26 +29,26 @@ struct dig_model_effect dig_trace_effect(const struct dig_soil *const   soil,
     const enum dig_effect_id       id    = fitted->hypothesis.effect[effect];
     const size_t                   n     = DIG_AT_U(effect);
     const struct dig_effect *const known = dig_effect_of(id);
-    struct dig_model_effect made = { .effect = id, .probability = probability, .parameters = 1 };
-    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
-                   known != NULL ? known->parameter[0].name : "magnitude");
-    made.parameter[0].value = dig_soil_magnitude(soil, id, fitted->number[n]);
-    made.parameter[0].low   = dig_soil_magnitude(soil, id, fitted->low[n]);
-    made.parameter[0].high  = dig_soil_magnitude(soil, id, fitted->high[n]);
+    struct dig_model_effect        made  = { .effect = id, .probability = probability };
+    add_parameter(known != NULL ? known->parameter[0].name : "magnitude",
+                  dig_soil_magnitude(soil, id, fitted->number[n]),
+                  dig_soil_magnitude(soil, id, fitted->low[n]),
+                  dig_soil_magnitude(soil, id, fitted->high[n]), &made);
     if (known != NULL && id == DIG_EFFECT_RATE_DEPENDENCE) {
-        struct dig_model_parameter *const along = &made.parameter[made.parameters++];
-        (void)snprintf(along->name, sizeof along->name, "%s", known->parameter[1].name);
-        along->value = soil->along;
-        along->low   = soil->along;
-        along->high  = soil->along;
+        add_parameter(known->parameter[1].name, soil->along, soil->along, soil->along, &made);
     }
     if (known != NULL && known->contrasted) {
-        struct dig_model_parameter *const contrast = &made.parameter[made.parameters++];
-        (void)snprintf(contrast->name, sizeof contrast->name, "%s", known->parameter[1].name);
-        contrast->value = fitted->number[n + 1];
-        contrast->low   = fitted->low[n + 1];
-        contrast->high  = fitted->high[n + 1];
+        add_parameter(known->parameter[1].name, fitted->number[n + 1], fitted->low[n + 1],
+                      fitted->high[n + 1], &made);
     }
+    return made;
+}
+
+struct dig_model_effect dig_trace_rock(const struct dig_rock *const rock, const double probability)
+{
+    struct dig_model_effect made = { .effect = DIG_EFFECT_OBSTACLE, .probability = probability };
+    add_parameter(dig_effect_of(DIG_EFFECT_OBSTACLE)->parameter[1].name, rock->ahead_m, rock->low_m,
+                  rock->high_m, &made);
     return made;
 }
 
@@ -68,20 +78,6 @@ static void sum_by_part(const struct dig_trace_work *const          w,
             relative * relative / (w->scatter->covariance[group->trajectory][f][f] * variance);
         count[part] += 1.0;
     }
-}
-
-struct dig_model_effect dig_trace_rock(const struct dig_rock *const rock, const double probability)
-{
-    const struct dig_effect *const known = dig_effect_of(DIG_EFFECT_OBSTACLE);
-    struct dig_model_effect        made  = { .effect      = DIG_EFFECT_OBSTACLE,
-                                             .probability = probability,
-                                             .parameters  = 1 };
-    made.parameter[0]                    = (struct dig_model_parameter){ .value = rock->ahead_m,
-                                                                         .low   = rock->low_m,
-                                                                         .high  = rock->high_m };
-    (void)snprintf(made.parameter[0].name, sizeof made.parameter[0].name, "%s",
-                   known->parameter[1].name);
-    return made;
 }
 
 enum dig_part dig_trace_seen_in(const struct dig_trace_work *const w,
@@ -228,20 +224,14 @@ static double fit_error(const struct dig_trace_work *const w, const struct dig_f
     return error;
 }
 
-// It is looked for when all else has failed, and was in no bootstrap.
-static void list_rock(const struct dig_trace_work *const w, struct dig_trace *const trace)
+static void add_candidate(const struct dig_model_effect *const made,
+                          const struct dig_candidate *const as, struct dig_trace *const trace)
 {
-    const struct dig_rock *const  rock = &w->search->rock;
-    struct dig_candidate *const   c    = &trace->candidate[trace->candidates++];
-    const struct dig_model_effect made = dig_trace_rock(rock, 0.0);
-    *c                                 = (struct dig_candidate){ .effect       = made.effect,
-                                                                 .log_evidence = rock->log_evidence,
-                                                                 .p_fit        = rock->p_fit,
-                                                                 .inclusion    = (double)NAN,
-                                                                 .error        = (double)NAN,
-                                                                 .parameters   = made.parameters,
-                                                                 .seen_in      = DIG_PART_SOIL };
-    memcpy(c->parameter, made.parameter, sizeof c->parameter);
+    struct dig_candidate *const c = &trace->candidate[trace->candidates++];
+    *c                            = *as;
+    c->effect                     = made->effect;
+    c->parameters                 = made->parameters;
+    memcpy(c->parameter, made->parameter, sizeof c->parameter);
 }
 
 void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_trace *const trace)
@@ -249,23 +239,29 @@ void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_
     const struct dig_search *const s                     = w->search;
     bool                           taken[DIG_RIVALS_MAX] = { false };
     if (s->is_rock && trace->candidates < DIG_TRACE_CANDIDATES_MAX) {
-        list_rock(w, trace);
+        // It is looked for when all else has failed, and was in no bootstrap.
+        const struct dig_model_effect made = dig_trace_rock(&s->rock, 0.0);
+        add_candidate(&made,
+                      &(struct dig_candidate){ .log_evidence = s->rock.log_evidence,
+                                               .p_fit        = s->rock.p_fit,
+                                               .inclusion    = (double)NAN,
+                                               .error        = (double)NAN,
+                                               .seen_in      = DIG_PART_SOIL },
+                      trace);
     }
     for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
          turn++) {
-        const size_t next                   = dig_search_best_rival(s, taken);
-        taken[next]                         = true;
+        const size_t                   next = dig_search_best_rival(s, taken);
         const struct dig_fitted *const f    = &s->rival[next];
         const struct dig_model_effect  made = dig_trace_effect(w->soil, f, 0, 0.0);
-        struct dig_candidate *const    c    = &trace->candidate[trace->candidates++];
-        *c                                  = (struct dig_candidate){ .effect       = made.effect,
-                                                                      .log_evidence = s->log_evidence[next],
-                                                                      .p_fit        = s->rival_fit[next],
-                                                                      .inclusion    = s->inclusion[next],
-                                                                      .error        = fit_error(w, f),
-                                                                      .parameters   = made.parameters,
-                                                                      .seen_in      = dig_trace_seen_in(w, f, 0) };
-        memcpy(c->parameter, made.parameter, sizeof c->parameter);
+        taken[next]                         = true;
+        add_candidate(&made,
+                      &(struct dig_candidate){ .log_evidence = s->log_evidence[next],
+                                               .p_fit        = s->rival_fit[next],
+                                               .inclusion    = s->inclusion[next],
+                                               .error        = fit_error(w, f),
+                                               .seen_in      = dig_trace_seen_in(w, f, 0) },
+                      trace);
     }
 }
 

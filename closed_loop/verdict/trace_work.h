@@ -44,6 +44,18 @@ struct dig_trace_work {
 DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w,
                                                struct dig_fitted *plain, struct dig_error *error);
 
+/// Leaves in w->measured[].machine what the answer's values add to every dig, and in *steps what
+/// its steps from there add to the mean dig of each of the batch's trajectories. DIG_ENOMATCH: a
+/// dig is not told with the effects. DIG_ENOMEM. Some milliseconds a parameter.
+DIG_MUST_CHECK enum dig_status dig_machine_steps_make(const struct dig_trace_work     *w,
+                                                      const struct dig_machine_answer *answer,
+                                                      struct dig_steps                *steps);
+
+/// Writes values and 90 % intervals of the answer's parameters: at z, whose covariance is
+/// [numbers * numbers] (NULL: the values alone).
+void dig_machine_steps_values(const double z[], const double covariance[],
+                              struct dig_machine_answer *answer);
+
 /// Finds what is missing of the machine, by free air and the digs together, and takes it off the
 /// digs: leaves measured[].machine, the batch and *plain with it, what is open of it as the batch's
 /// steps, each effect's size in the digs in size[], and its probability weighed by that. w->before:
