@@ -7,7 +7,6 @@
 // Evidence is tempered: covariance and templates are known from a few packings only.
 static const double temper = 0.5;
 
-// A gravel that the grid does not hold explains the digs at least as well as what was chosen.
 bool dig_search_is_outside(const struct dig_search_work *const c)
 {
     const struct dig_fitted *const chosen    = &c->s->chosen;
@@ -25,7 +24,6 @@ static bool is_near_chosen(const struct dig_search_work *const c, const size_t r
            !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
 }
 
-// Single effects that the digs cannot tell from the one chosen, in the order of their evidence.
 void dig_search_find_set(struct dig_search_work *const c)
 {
     struct dig_candidate_set *const set = &c->s->set[0];
@@ -45,7 +43,6 @@ void dig_search_find_set(struct dig_search_work *const c)
     c->s->sets = set->effects > 1 ? 1 : 0;
 }
 
-// The weight of each answer among all that were tried: Bayes, tempered.
 void dig_search_set_probabilities(struct dig_search_work *const c)
 {
     const struct dig_fitted *const chosen    = &c->s->chosen;
@@ -53,7 +50,7 @@ void dig_search_set_probabilities(struct dig_search_work *const c)
     const bool                     single    = chosen->hypothesis.effects == 1;
     const double                   by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
     for (size_t e = 0; e < chosen->hypothesis.effects; e++) {
-        double with    = exp(0.0);
+        double with    = 1.0;
         double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));
         for (size_t i = 0; i < c->s->rivals; i++) {
             const double weight = exp(temper * (c->s->log_evidence[i] - evidence));

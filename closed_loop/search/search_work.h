@@ -44,10 +44,11 @@ DIG_MUST_CHECK enum dig_status dig_search_which(struct dig_search_work *c);
 /// chosen.
 bool dig_search_is_outside(const struct dig_search_work *c);
 
-/// Fills s->set with the single effects that the digs cannot tell from the one chosen.
+/// Fills s->set with the single effects that the digs cannot tell from the one chosen, in the order
+/// of their evidence.
 void dig_search_find_set(struct dig_search_work *c);
 
-/// Fills s->probability: the weight of each answer among all that were tried.
+/// Fills s->probability: the weight of each answer among all that were tried, by tempered Bayes.
 void dig_search_set_probabilities(struct dig_search_work *c);
 
 /// How many sigmas the parabola's own term is from nothing, of a fit that holds wear; of any other,
