@@ -49,10 +49,11 @@ struct work {
     struct dig_air  *air;
     struct dig_lines lines;
     struct dig_fit   fit;
-    double          *base;  // [columns] width of each column's tolerance, in scales
-    double          *gross; // [columns] and of a cause
-    double          *width; // [columns] of the fit at hand
-    double          *at, *covariance, *step;
+    double           base[DIG_LINES_COLUMNS_MAX];  // width of each column's tolerance, in scales
+    double           gross[DIG_LINES_COLUMNS_MAX]; // and of a cause
+    double           width[DIG_LINES_COLUMNS_MAX]; // of the fit at hand
+    double           at[DIG_LINES_COLUMNS_MAX];
+    double          *covariance; // [columns * columns]
     bool             asked[DIG_CAUSES];
     double           least; // log evidence that a cause must bring
 };
@@ -256,21 +257,16 @@ static unsigned choose(struct work *const w)
 }
 
 // Sums the equations where the lines stand; s2 by what everything together leaves.
-static enum dig_status take_slopes(struct work *const w)
+static void take_slopes(struct work *const w)
 {
-    const enum dig_status status =
-        dig_lines_update(&w->lines, DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE);
     const double          one = 1.0;
     struct dig_fit_answer all;
-    if (status != DIG_OK) {
-        return status;
-    }
+    dig_lines_update(&w->lines, DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE);
     dig_fit_sum(&w->fit, &one);
     w->fit.s2 = 1.0;
     solve(w, (1U << DIG_CAUSES) - 1U, true, &all);
     w->fit.s2 =
         fmax(1.0, all.rest2 / fmax(w->fit.rows - (double)w->lines.columns, 0.25 * w->fit.rows));
-    return DIG_OK;
 }
 
 static double penalty(const struct work *const w, const double at[])
@@ -286,52 +282,44 @@ static double penalty(const struct work *const w, const double at[])
 static double go(struct work *const w, const unsigned named)
 {
     struct dig_fit_answer answer;
+    double                step[DIG_LINES_COLUMNS_MAX];
     solve(w, named, true, &answer);
     const double now = dig_lines_rest2(&w->lines, w->lines.at) + penalty(w, w->lines.at);
     for (int halved = 0; halved < HALVINGS; halved++) {
         double moved = 0.0;
         for (size_t c = 0; c < w->lines.columns; c++) {
             const double way = ldexp(w->at[c] - w->lines.at[c], -halved);
-            w->step[c]       = w->lines.at[c] + way;
+            step[c]          = w->lines.at[c] + way;
             moved            = w->width[c] > 0.0 ? fmax(moved, fabs(way) / w->width[c]) : moved;
         }
-        if (dig_lines_rest2(&w->lines, w->step) + penalty(w, w->step) <= now) {
-            memcpy(w->lines.at, w->step, w->lines.columns * sizeof(double));
+        if (dig_lines_rest2(&w->lines, step) + penalty(w, step) <= now) {
+            memcpy(w->lines.at, step, w->lines.columns * sizeof(double));
             return moved;
         }
     }
     return 0.0;
 }
 
-// Rows of valves that hunt scatter more than their sensors.
-static enum dig_status widen(struct work *const w)
+// The causes named, with the lines where they lead.
+static unsigned find(struct work *const w)
 {
     struct dig_fit_answer all;
-    bool                  widened;
+    unsigned              named = 0;
+    take_slopes(w);
+    // Rows of valves that hunt scatter more than their sensors.
     solve(w, (1U << DIG_CAUSES) - 1U, true, &all);
-    return dig_machine_noise_widen(&w->lines, w->at, &widened);
-}
-
-static enum dig_status find(struct work *const w, unsigned *const named)
-{
-    enum dig_status status = take_slopes(w);
-    if (status == DIG_OK) {
-        status = widen(w);
-    }
-    *named = 0;
-    for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
-        status = take_slopes(w);
-        if (status != DIG_OK) {
-            break;
-        }
-        const unsigned before = *named;
-        *named                = choose(w);
+    (void)dig_machine_noise_widen(&w->lines, w->at);
+    for (int round = 0; round < ROUNDS; round++) {
+        const unsigned before = named;
+        take_slopes(w);
+        named = choose(w);
         // Near its end this moves within a fortieth of what is allowed.
-        if (go(w, *named) < 0.025 && *named == before) {
+        if (go(w, named) < 0.025 && named == before) {
             break;
         }
     }
-    return status == DIG_OK ? take_slopes(w) : status;
+    take_slopes(w);
+    return named;
 }
 
 // How much a column counts in the figure of its cause, with the covariance as last solved.
@@ -418,33 +406,23 @@ static void figures(struct work *const w, const unsigned named, struct dig_cause
 }
 
 // Of each joint what is left, rms: in sigmas, and at the rod.
-static enum dig_status rests(const struct work *const w, const double at[], double rms[DIG_JOINTS],
-                             double rms_N[DIG_JOINTS])
+static void rests(const struct work *const w, const double at[], double rms[DIG_JOINTS],
+                  double rms_N[DIG_JOINTS])
 {
-    double *const         rest   = malloc((w->air->rows + 1) * sizeof *rest);
-    const enum dig_status status = rest != NULL ? dig_lines_rest(&w->lines, at, rest) : DIG_ENOMEM;
-    double                sum[DIG_JOINTS]    = { 0.0 };
-    double                sum_N2[DIG_JOINTS] = { 0.0 };
-    double                count[DIG_JOINTS]  = { 0.0 };
-    for (size_t r = 0; r < w->air->rows && status == DIG_OK; r++) {
+    double *const rest               = w->lines.work;
+    double        sum[DIG_JOINTS]    = { 0.0 };
+    double        sum_N2[DIG_JOINTS] = { 0.0 };
+    double        count[DIG_JOINTS]  = { 0.0 };
+    dig_lines_rest(&w->lines, at, rest);
+    for (size_t r = 0; r < w->air->rows; r++) {
         sum[w->air->row[r].joint] += rest[r] * rest[r];
         sum_N2[w->air->row[r].joint] += pow(rest[r] * w->air->row[r].sigma_N, 2.0);
         count[w->air->row[r].joint] += 1.0;
     }
-    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+    for (int j = 0; j < DIG_JOINTS; j++) {
         rms[j]   = count[j] > 0.0 ? sqrt(sum[j] / count[j]) : (double)NAN;
         rms_N[j] = count[j] > 0.0 ? sqrt(sum_N2[j] / count[j]) : (double)NAN;
     }
-    free(rest);
-    return status;
-}
-
-static void work_finish(struct work *const w)
-{
-    dig_fit_finish(&w->fit);
-    dig_lines_finish(&w->lines);
-    free(w->base);
-    free(w->covariance);
 }
 
 static enum dig_status work_make(struct dig_air *const air, struct work *const w)
@@ -454,21 +432,13 @@ static enum dig_status work_make(struct dig_air *const air, struct work *const w
         scale[p] = p < LINKS ? DIG_RAD_PER_DEG : air->machine.link[p - LINKS].mass_kg;
     }
     w->air                 = air;
-    enum dig_status status = dig_lines_make_with_file(air, scale, &w->lines);
+    enum dig_status status = dig_lines_make(air, scale, &w->lines);
     if (status == DIG_OK) {
         status = dig_fit_make(&w->lines, &w->fit);
     }
     if (status == DIG_OK) {
-        const size_t n = w->lines.columns;
-        w->base        = calloc(5 * n, sizeof(double));
-        w->covariance  = calloc(n * n, sizeof(double));
-        status         = w->base != NULL && w->covariance != NULL ? DIG_OK : DIG_ENOMEM;
-        if (status == DIG_OK) {
-            w->gross = w->base + n;
-            w->width = w->base + 2 * n;
-            w->at    = w->base + 3 * n;
-            w->step  = w->base + 4 * n;
-        }
+        w->covariance = malloc(w->lines.columns * w->lines.columns * sizeof(double));
+        status        = w->covariance != NULL ? DIG_OK : DIG_ENOMEM;
     }
     return status;
 }
@@ -477,37 +447,27 @@ enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_
                                 struct dig_causes *const causes, struct dig_correction correction[])
 {
     assert(air != NULL && moves != NULL && causes != NULL && correction != NULL);
-    struct work       w      = { .least = log(DIG_CAUSES / false_alarm) };
-    struct dig_causes found  = { .rest = { NAN, NAN, NAN }, .rest_plain = { NAN, NAN, NAN } };
-    unsigned          named  = 0;
-    enum dig_status   status = work_make(air, &w);
-    if (status != DIG_OK) {
-        work_finish(&w);
-        return status;
-    }
-    for (size_t k = 0; k < DIG_CAUSES; k++) {
-        w.asked[k] = k == DIG_CAUSE_DELAY || moves[k % DIG_JOINTS];
-    }
-    set_widths(&w);
-    memset(w.step, 0, w.lines.columns * sizeof(double));
-    status = find(&w, &named);
+    struct work     w      = { .least = log(DIG_CAUSES / false_alarm) };
+    enum dig_status status = work_make(air, &w);
     if (status == DIG_OK) {
-        memset(w.step, 0, w.lines.columns * sizeof(double));
-        status = rests(&w, w.step, found.rest_plain, found.rest_N);
-    }
-    if (status == DIG_OK) {
-        status = rests(&w, w.lines.at, found.rest, found.rest_N);
-    }
-    if (status == DIG_OK) {
-        figures(&w, named, found.cause);
+        double alone[DIG_LINES_COLUMNS_MAX];
+        for (size_t k = 0; k < DIG_CAUSES; k++) {
+            w.asked[k] = k == DIG_CAUSE_DELAY || moves[k % DIG_JOINTS];
+        }
+        set_widths(&w);
+        const unsigned named = find(&w);
+        rests(&w, w.lines.absent, causes->rest_plain, causes->rest_N);
+        rests(&w, w.lines.at, causes->rest, causes->rest_N);
+        figures(&w, named, causes->cause);
         // The causes alone: what is within its tolerance is no one's to mend.
         for (size_t c = 0; c < w.lines.columns; c++) {
             const int cause = cause_of(&w.lines.column[c]);
-            w.step[c]       = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.lines.at[c] : 0.0;
+            alone[c]        = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.lines.at[c] : 0.0;
         }
-        dig_lines_correct(&w.lines, w.step, correction);
-        *causes = found;
+        dig_lines_correct(&w.lines, alone, correction);
     }
-    work_finish(&w);
+    dig_fit_finish(&w.fit);
+    dig_lines_finish(&w.lines);
+    free(w.covariance);
     return status;
 }

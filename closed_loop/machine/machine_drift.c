@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // What a gain and an offset may grow by with one sigma of what they follow: as an error that stays
@@ -160,23 +159,17 @@ static double evidence(const size_t form, const bool follows, double slope2[COLU
     return 0.5 * (gain - dig_lower_log_det(columns, h));
 }
 
-enum dig_status dig_machine_drift_ask(const struct dig_lines *const lines, const double s2,
-                                      struct dig_machine_drift *const drift)
+struct dig_machine_drift dig_machine_drift_ask(const struct dig_lines *const lines, const double s2)
 {
-    assert(lines != NULL && drift != NULL && s2 > 0.0);
-    const size_t    rows   = lines->air->rows + 1;
-    double *const   absent = calloc(lines->columns + 1, sizeof *absent);
-    double *const   rest   = malloc(2 * rows * sizeof *rest);
-    enum dig_status status = DIG_ENOMEM;
-    if (absent != NULL && rest != NULL) {
-        status = dig_lines_rest(lines, absent, rest);
-    }
-    *drift       = (struct dig_machine_drift){ .log_evidence = -INFINITY, .log_lead = -INFINITY };
-    double tried = 0.0;
-    for (int what = 0; what < FOLLOWS && status == DIG_OK; what++) {
-        double *const z = rest + rows;
-        double        slope2[COLUMNS][COLUMNS];
-        double        slope_rest[COLUMNS];
+    assert(lines != NULL && s2 > 0.0);
+    struct dig_machine_drift drift = { .log_evidence = -INFINITY, .log_lead = -INFINITY };
+    double *const            rest  = lines->work;
+    double *const            z     = rest + lines->air->rows;
+    double                   tried = 0.0;
+    dig_lines_rest(lines, lines->absent, rest);
+    for (int what = 0; what < FOLLOWS; what++) {
+        double slope2[COLUMNS][COLUMNS];
+        double slope_rest[COLUMNS];
         if (!states(lines->air, (enum follows)what, z)) {
             continue;
         }
@@ -190,13 +183,11 @@ enum dig_status dig_machine_drift_ask(const struct dig_lines *const lines, const
             found              = fmax(found, evidence(form, true, slope2, slope_rest, s2, share));
             tried += 1.0;
         }
-        if (found - stays > drift->log_lead) {
-            *drift = (struct dig_machine_drift){ found, found - stays, follows_text[what] };
+        if (found - stays > drift.log_lead) {
+            drift = (struct dig_machine_drift){ found, found - stays, follows_text[what] };
         }
     }
-    drift->log_evidence -= log(fmax(tried, 1.0));
-    drift->log_lead -= log(fmax(tried, 1.0));
-    free(absent);
-    free(rest);
-    return status;
+    drift.log_evidence -= log(fmax(tried, 1.0));
+    drift.log_lead -= log(fmax(tried, 1.0));
+    return drift;
 }

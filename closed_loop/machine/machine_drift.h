@@ -9,7 +9,6 @@
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_DRIFT_H
 
 #include "closed_loop/machine/machine_lines.h"
-#include "core/status.h"
 
 /// What the sensors' errors would follow, and how much that explains.
 struct dig_machine_drift {
@@ -20,8 +19,7 @@ struct dig_machine_drift {
 
 /// Asks the air as the lines stand, without any effect, rows as far as they are trusted; s2: the
 /// variance of the noise in the rows' sigmas. -INFINITY where nothing that was recorded differs.
-/// Some milliseconds. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_machine_drift_ask(const struct dig_lines *lines, double s2,
-                                                     struct dig_machine_drift *drift);
+/// Some milliseconds.
+struct dig_machine_drift dig_machine_drift_ask(const struct dig_lines *lines, double s2);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_DRIFT_H

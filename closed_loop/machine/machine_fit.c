@@ -15,28 +15,19 @@ enum { WIDTHS = sizeof width / sizeof width[0] };
 enum dig_status dig_fit_make(const struct dig_lines *const lines, struct dig_fit *const fit)
 {
     assert(lines != NULL && fit != NULL);
-    const size_t   n    = lines->columns;
-    struct dig_fit made = {
-        .lines      = lines,
-        .slope_rest = malloc(n * sizeof(double)),
-        .slope2     = malloc(n * n * sizeof(double)),
-        .work       = malloc((n * n + 3 * n) * sizeof(double)),
-        .s2         = 1.0,
-    };
-    if (made.slope_rest == NULL || made.slope2 == NULL || made.work == NULL) {
-        dig_fit_finish(&made);
+    const size_t  n      = lines->columns;
+    double *const memory = malloc(2 * n * n * sizeof *memory);
+    if (memory == NULL) {
         return DIG_ENOMEM;
     }
-    *fit = made;
+    *fit = (struct dig_fit){ .lines = lines, .slope2 = memory, .work = memory + n * n, .s2 = 1.0 };
     return DIG_OK;
 }
 
 void dig_fit_finish(struct dig_fit *const fit)
 {
     if (fit != NULL) {
-        free(fit->slope_rest);
         free(fit->slope2);
-        free(fit->work);
         *fit = (struct dig_fit){ .rows = 0.0 };
     }
 }
@@ -81,15 +72,12 @@ static size_t columns_of(const struct dig_lines *const lines, const unsigned set
     return n;
 }
 
-enum { MOST = DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + 2 * DIG_MEASURED_MAX + 8 };
-_Static_assert(DIG_FILE_ERRORS <= 8, "columns");
-
 // The n columns of a list, with priors so wide each.
 static void solve_columns(const struct dig_fit *const fit, const size_t n, const size_t column[],
                           const double share[], struct dig_fit_answer *const answer)
 {
     const size_t  all = fit->lines->columns;
-    double        x[MOST];
+    double        x[DIG_LINES_COLUMNS_MAX];
     double *const h = fit->work;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j <= i; j++) {
@@ -116,7 +104,7 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
         }
     }
     for (size_t i = 0; i < n && (answer->sigma != NULL || answer->covariance != NULL); i++) {
-        double one[MOST];
+        double one[DIG_LINES_COLUMNS_MAX];
         memset(one, 0, n * sizeof one[0]);
         one[i] = 1.0;
         substitute(n, h, one);
@@ -133,8 +121,8 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
 static void solve_at(const struct dig_fit *const fit, const unsigned set, const size_t wide,
                      struct dig_fit_answer *const answer)
 {
-    size_t       column[MOST];
-    double       share[MOST];
+    size_t       column[DIG_LINES_COLUMNS_MAX];
+    double       share[DIG_LINES_COLUMNS_MAX];
     const size_t n = columns_of(fit->lines, set, column);
     for (size_t i = 0; i < n; i++) {
         share[i] = width[wide];
@@ -147,8 +135,8 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
                         struct dig_fit_answer *const answer)
 {
     assert(fit != NULL && widths != NULL && answer != NULL);
-    size_t column[MOST];
-    double share[MOST];
+    size_t column[DIG_LINES_COLUMNS_MAX];
+    double share[DIG_LINES_COLUMNS_MAX];
     size_t n = 0;
     for (size_t c = 0; c < fit->lines->columns; c++) {
         if (widths[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
@@ -165,20 +153,20 @@ static void move_to_absent(struct dig_fit *const fit)
 {
     const struct dig_lines *const lines = fit->lines;
     const size_t                  n     = lines->columns;
-    double *const                 back  = fit->work; // how far each goes
+    double                        back[DIG_LINES_COLUMNS_MAX]; // how far each goes
+    double                        more[DIG_LINES_COLUMNS_MAX];
     for (size_t c = 0; c < n; c++) {
         back[c] = dig_lines_is_bent(lines, c) ? 0.0 : -lines->at[c];
     }
     for (size_t a = 0; a < n; a++) {
-        double sum = 0.0;
+        more[a] = 0.0;
         for (size_t b = 0; b < n; b++) {
-            sum += fit->slope2[a * n + b] * back[b];
+            more[a] += fit->slope2[a * n + b] * back[b];
         }
-        fit->rest2 += back[a] * (2.0 * fit->slope_rest[a] + sum);
-        fit->work[n + a] = sum;
+        fit->rest2 += back[a] * (2.0 * fit->slope_rest[a] + more[a]);
     }
     for (size_t a = 0; a < n; a++) {
-        fit->slope_rest[a] += fit->work[n + a];
+        fit->slope_rest[a] += more[a];
     }
 }
 

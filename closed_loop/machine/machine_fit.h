@@ -25,9 +25,10 @@
 struct dig_fit {
     const struct dig_lines *lines;
     double                  rows, rest2;
-    double                 *slope_rest, *slope2; // as struct dig_lines_normal
-    double                  s2;                  // variance of the noise in the rows' sigmas
-    double                 *work;
+    double                  slope_rest[DIG_LINES_COLUMNS_MAX]; // as struct dig_lines_normal
+    double                 *slope2;
+    double                  s2;   // variance of the noise in the rows' sigmas
+    double                 *work; // [columns * columns]
 };
 
 /// One set of effects, solved.

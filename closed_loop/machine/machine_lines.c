@@ -51,11 +51,6 @@ static void list_columns(struct dig_lines *const lines, const double file_scale[
     lines->columns = n;
 }
 
-static size_t most_columns(const struct dig_air *const air)
-{
-    return (size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + air->segments + DIG_FILE_ERRORS;
-}
-
 static void number_digs(struct dig_lines *const lines)
 {
     lines->digs = 0;
@@ -66,69 +61,44 @@ static void number_digs(struct dig_lines *const lines)
     }
 }
 
-static enum dig_status make(struct dig_air *const air, const double file_scale[],
-                            struct dig_lines *const lines)
+enum dig_status dig_lines_make(struct dig_air *const air, const double file_scale[DIG_FILE_ERRORS],
+                               struct dig_lines *const lines)
 {
-    const size_t     most = most_columns(air);
-    struct dig_lines made = {
-        .air    = air,
-        .column = malloc(most * sizeof *made.column),
-        .at     = calloc(most, sizeof *made.at),
-        .dig    = malloc((air->segments + 1) * sizeof *made.dig),
-        .normal = calloc(air->segments + 1, sizeof *made.normal),
-        .trust  = malloc((air->rows + 1) * sizeof *made.trust),
-    };
-    bool ok = made.column != NULL && made.at != NULL && made.dig != NULL && made.normal != NULL &&
-              made.trust != NULL;
-    for (size_t r = 0; ok && r < air->rows; r++) {
-        made.trust[r] = 1.0;
-    }
-    if (ok) {
-        list_columns(&made, file_scale);
-        number_digs(&made);
-    }
-    for (size_t d = 0; ok && d < made.digs; d++) {
-        made.normal[d].slope_rest = malloc(made.columns * sizeof(double));
-        made.normal[d].slope2     = malloc(made.columns * made.columns * sizeof(double));
-        ok = made.normal[d].slope_rest != NULL && made.normal[d].slope2 != NULL;
+    assert(air != NULL && air->segments <= DIG_LINES_SEGMENTS_MAX && lines != NULL);
+    *lines = (struct dig_lines){ .air = air };
+    list_columns(lines, file_scale);
+    number_digs(lines);
+    const size_t n    = lines->columns;
+    lines->trust      = malloc((air->rows + 1) * sizeof *lines->trust);
+    lines->work       = malloc((3 + n) * (air->rows + 1) * sizeof *lines->work);
+    lines->correction = malloc((air->segments + 1) * sizeof *lines->correction);
+    bool ok           = lines->trust != NULL && lines->work != NULL && lines->correction != NULL;
+    for (size_t d = 0; d < lines->digs; d++) {
+        lines->normal[d].slope2     = malloc((n * n + n) * sizeof(double));
+        lines->normal[d].slope_rest = lines->normal[d].slope2 + n * n;
+        ok                          = ok && lines->normal[d].slope2 != NULL;
     }
     if (!ok) {
-        dig_lines_finish(&made);
+        dig_lines_finish(lines);
         return DIG_ENOMEM;
     }
-    *lines = made;
+    for (size_t r = 0; r < air->rows; r++) {
+        lines->trust[r] = 1.0;
+    }
     return DIG_OK;
-}
-
-enum dig_status dig_lines_make(struct dig_air *const air, struct dig_lines *const lines)
-{
-    assert(air != NULL && lines != NULL);
-    return make(air, NULL, lines);
-}
-
-enum dig_status dig_lines_make_with_file(struct dig_air *const   air,
-                                         const double            scale[DIG_FILE_ERRORS],
-                                         struct dig_lines *const lines)
-{
-    assert(air != NULL && scale != NULL && lines != NULL);
-    return make(air, scale, lines);
 }
 
 void dig_lines_finish(struct dig_lines *const lines)
 {
-    if (lines == NULL) {
-        return;
+    if (lines != NULL) {
+        for (size_t d = 0; d < lines->digs; d++) {
+            free(lines->normal[d].slope2);
+        }
+        free(lines->trust);
+        free(lines->work);
+        free(lines->correction);
+        *lines = (struct dig_lines){ .columns = 0 };
     }
-    for (size_t d = 0; d < lines->digs; d++) {
-        free(lines->normal[d].slope_rest);
-        free(lines->normal[d].slope2);
-    }
-    free(lines->column);
-    free(lines->at);
-    free(lines->dig);
-    free(lines->normal);
-    free(lines->trust);
-    *lines = (struct dig_lines){ .columns = 0 };
 }
 
 bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
@@ -174,33 +144,32 @@ void dig_lines_correct(const struct dig_lines *const lines, const double at[],
     }
 }
 
-// How every row changes with some columns at once, by a central difference.
-static void slope_of(const struct dig_lines *const lines, const size_t columns,
-                     const size_t column[], double *const at, struct dig_correction correction[],
-                     double *const less, double *const slope)
+// How every row changes with columns [first, first + columns) at once, by a central difference.
+static void slope_of(struct dig_lines *const lines, const size_t first, const size_t columns,
+                     double less[], double slope[])
 {
     for (int way = -1; way <= 1; way += 2) {
-        for (size_t c = 0; c < columns; c++) {
-            at[column[c]] += way < 0 ? -step : 2.0 * step;
+        for (size_t c = first; c < first + columns; c++) {
+            lines->at[c] += way < 0 ? -step : 2.0 * step;
         }
-        dig_lines_correct(lines, at, correction);
-        dig_air_rest(lines->air, correction, true, way < 0 ? less : slope);
+        dig_lines_correct(lines, lines->at, lines->correction);
+        dig_air_rest(lines->air, lines->correction, true, way < 0 ? less : slope);
     }
-    for (size_t c = 0; c < columns; c++) {
-        at[column[c]] -= step;
+    for (size_t c = first; c < first + columns; c++) {
+        lines->at[c] -= step;
     }
     for (size_t r = 0; r < lines->air->rows; r++) {
         slope[r] = (slope[r] - less[r]) / (2.0 * step);
     }
 }
 
-// All slopes. A segment has one column of its own at most, so that all of these are moved at once
-// and each takes its segment's rows.
-static void fill_slopes(const struct dig_lines *const lines, const unsigned set, double *const at,
-                        struct dig_correction correction[], double *const less, double *const all,
-                        size_t own[], double *const slope)
+// All slopes. Every segment has one column of its own, in their order, so that all of these are
+// moved at once and each takes its segment's rows.
+static void fill_slopes(struct dig_lines *const lines, const unsigned set, double less[],
+                        double all[], double slope[])
 {
     const size_t rows = lines->air->rows;
+    size_t       own  = 0;
     size_t       owns = 0;
     memset(slope, 0, lines->columns * rows * sizeof *slope);
     for (size_t c = 0; c < lines->columns; c++) {
@@ -208,21 +177,22 @@ static void fill_slopes(const struct dig_lines *const lines, const unsigned set,
             continue;
         }
         if (lines->column[c].segment >= 0) {
-            own[owns++] = c;
+            own = owns++ == 0 ? c : own;
         } else {
-            slope_of(lines, 1, &c, at, correction, less, &slope[c * rows]);
+            slope_of(lines, c, 1, less, &slope[c * rows]);
         }
     }
     if (owns > 0) {
-        slope_of(lines, owns, own, at, correction, less, all);
+        slope_of(lines, own, owns, less, all);
     }
     for (size_t i = 0; i < owns; i++) {
-        const struct dig_air_segment *const s = &lines->air->segment[lines->column[own[i]].segment];
-        memcpy(&slope[own[i] * rows + s->first_row], &all[s->first_row], s->rows * sizeof *slope);
+        const struct dig_air_segment *const s = &lines->air->segment[i];
+        memcpy(&slope[(own + i) * rows + s->first_row], &all[s->first_row],
+               s->rows * sizeof *slope);
     }
 }
 
-static void sum_up(const struct dig_lines *const lines, double rest[], double slope[])
+static void sum_up(struct dig_lines *const lines, double rest[], double slope[])
 {
     for (size_t r = 0; r < lines->air->rows; r++) {
         rest[r] *= lines->trust[r];
@@ -273,59 +243,35 @@ static void sum_up(const struct dig_lines *const lines, double rest[], double sl
     }
 }
 
-enum dig_status dig_lines_update(struct dig_lines *const lines, const unsigned set)
+void dig_lines_update(struct dig_lines *const lines, const unsigned set)
 {
     assert(lines != NULL);
-    const size_t                 rows = lines->air->rows + 1;
-    struct dig_correction *const correction =
-        malloc((lines->air->segments + 1) * sizeof *correction);
-    double *const   rest   = malloc(3 * rows * sizeof *rest);
-    double *const   slope  = malloc(lines->columns * rows * sizeof *slope);
-    size_t *const   own    = malloc((lines->air->segments + 1) * sizeof *own);
-    enum dig_status status = DIG_ENOMEM;
-    if (correction != NULL && rest != NULL && slope != NULL && own != NULL) {
-        dig_lines_correct(lines, lines->at, correction);
-        dig_air_calm(lines->air, correction);
-        fill_slopes(lines, set, lines->at, correction, rest + rows, rest + 2 * rows, own, slope);
-        dig_lines_correct(lines, lines->at, correction);
-        dig_air_rest(lines->air, correction, false, rest);
-        sum_up(lines, rest, slope);
-        status = DIG_OK;
-    }
-    free(correction);
-    free(rest);
-    free(slope);
-    free(own);
-    return status;
+    const size_t  rows  = lines->air->rows;
+    double *const rest  = lines->work;
+    double *const slope = rest + 3 * rows;
+    dig_lines_correct(lines, lines->at, lines->correction);
+    dig_air_calm(lines->air, lines->correction);
+    fill_slopes(lines, set, rest + rows, rest + 2 * rows, slope);
+    dig_lines_rest(lines, lines->at, rest);
+    sum_up(lines, rest, slope);
 }
 
-enum dig_status dig_lines_rest(const struct dig_lines *const lines, const double at[],
-                               double rest[])
+void dig_lines_rest(const struct dig_lines *const lines, const double at[], double rest[])
 {
     assert(lines != NULL && at != NULL && rest != NULL);
-    struct dig_correction *const correction =
-        malloc((lines->air->segments + 1) * sizeof *correction);
-    if (correction == NULL) {
-        return DIG_ENOMEM;
-    }
-    dig_lines_correct(lines, at, correction);
-    dig_air_rest(lines->air, correction, false, rest);
-    free(correction);
-    return DIG_OK;
+    dig_lines_correct(lines, at, lines->correction);
+    dig_air_rest(lines->air, lines->correction, false, rest);
 }
 
 double dig_lines_rest2(const struct dig_lines *const lines, const double at[])
 {
     assert(lines != NULL && at != NULL);
-    double *const rest  = malloc((lines->air->rows + 1) * sizeof *rest);
-    double        rest2 = INFINITY;
-    if (rest != NULL && dig_lines_rest(lines, at, rest) == DIG_OK) {
-        rest2 = 0.0;
-        for (size_t r = 0; r < lines->air->rows; r++) {
-            rest2 += pow(lines->trust[r] * rest[r], 2.0);
-        }
+    double *const rest  = lines->work;
+    double        rest2 = 0.0;
+    dig_lines_rest(lines, at, rest);
+    for (size_t r = 0; r < lines->air->rows; r++) {
+        rest2 += pow(lines->trust[r] * rest[r], 2.0);
     }
-    free(rest);
     return rest2;
 }
 
@@ -376,59 +322,46 @@ static double slow_rest2(const struct dig_lines *const lines, const double rest[
     return sum;
 }
 
-// The values without those of one effect; false when it has none.
-static bool leave_out(const struct dig_lines *const lines, const enum dig_effect_id effect,
-                      double at[])
+// What an effect explains of every row whose rest with all of them is given; false when it has no
+// values.
+static bool explain(const struct dig_lines *const lines, const enum dig_effect_id effect,
+                    const double rest[], double explained[])
 {
-    bool any = false;
+    double at[DIG_LINES_COLUMNS_MAX];
+    bool   any = false;
     for (size_t c = 0; c < lines->columns; c++) {
         const bool mine = lines->column[c].effect == effect;
         any             = any || (mine && fabs(lines->at[c]) > 0.0);
         at[c]           = mine ? 0.0 : lines->at[c];
     }
+    if (any) {
+        dig_lines_rest(lines, at, explained);
+    }
+    for (size_t r = 0; r < lines->air->rows && any; r++) {
+        explained[r] -= rest[r];
+    }
     return any;
 }
 
-enum dig_status dig_lines_judge(struct dig_lines *const lines, double *const slow)
+double dig_lines_judge(struct dig_lines *const lines)
 {
-    assert(lines != NULL && slow != NULL);
-    const size_t                 rows = lines->air->rows + 1;
-    struct dig_correction *const correction =
-        malloc((lines->air->segments + 1) * sizeof *correction);
-    double *const at   = malloc((lines->columns + 1) * sizeof *at);
-    double *const rest = calloc(3 * rows, sizeof *rest);
-    if (correction == NULL || at == NULL || rest == NULL) {
-        free(correction);
-        free(at);
-        free(rest);
-        return DIG_ENOMEM;
-    }
+    assert(lines != NULL);
+    const size_t  rows      = lines->air->rows;
+    double *const rest      = lines->work;
     double *const explained = rest + rows;
     double *const wrong     = rest + 2 * rows;
-    dig_lines_correct(lines, lines->at, correction);
-    dig_air_rest(lines->air, correction, false, rest);
+    memset(wrong, 0, rows * sizeof *wrong);
+    dig_lines_rest(lines, lines->at, rest);
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        const enum dig_effect_id effect = (enum dig_effect_id)e;
-        if (leave_out(lines, effect, at)) {
-            dig_lines_correct(lines, at, correction);
-            dig_air_rest(lines->air, correction, false, explained);
-            for (size_t r = 0; r < lines->air->rows; r++) {
-                explained[r] -= rest[r];
-            }
-            add_form(lines->air, effect, explained, wrong);
+        if (explain(lines, (enum dig_effect_id)e, rest, explained)) {
+            add_form(lines->air, (enum dig_effect_id)e, explained, wrong);
         }
     }
-    dig_lines_correct(lines, lines->at, correction);
-    dig_air_held(lines->air, correction, explained);
-    for (size_t r = 0; r < lines->air->rows; r++) {
+    dig_lines_correct(lines, lines->at, lines->correction);
+    dig_air_held(lines->air, lines->correction, explained);
+    for (size_t r = 0; r < rows; r++) {
         wrong[r] += explained[r];
-    }
-    for (size_t r = 0; r < lines->air->rows; r++) {
         lines->trust[r] = 1.0 / hypot(1.0, wrong[r]);
     }
-    *slow = slow_rest2(lines, rest, wrong);
-    free(correction);
-    free(at);
-    free(rest);
-    return DIG_OK;
+    return slow_rest2(lines, rest, wrong);
 }

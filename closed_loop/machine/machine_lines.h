@@ -11,6 +11,7 @@
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
 
 #include "closed_loop/machine/machine_air.h"
+#include "closed_loop/recordings/measured.h"
 #include "core/effect.h"
 #include "core/model.h"
 
@@ -19,6 +20,11 @@
 /// The bit of what a file may have wrong besides (struct dig_file_error): those columns are of no
 /// effect of the catalogue, DIG_EFFECT_UNLISTED, and there only where asked for.
 #define DIG_LINES_OF_FILE (1U << DIG_EFFECT_UNLISTED)
+
+#define DIG_LINES_COLUMNS_MAX                                                                      \
+    ((size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + DIG_LINES_SEGMENTS_MAX +             \
+     DIG_FILE_ERRORS)
+#define DIG_LINES_SEGMENTS_MAX ((size_t)2 * DIG_MEASURED_MAX)
 
 struct dig_lines_column {
     enum dig_effect_id effect;
@@ -37,14 +43,17 @@ struct dig_lines_normal {
 
 /// Free with dig_lines_finish().
 struct dig_lines {
-    struct dig_air          *air;
-    size_t                   columns;
-    struct dig_lines_column *column;
-    double                  *at;     // [columns], in scales from absent
-    size_t                   digs;   // those of the air, in its order
-    size_t                  *dig;    // [segments] which of them a segment is of
-    struct dig_lines_normal *normal; // [digs]
-    double                  *trust;  // [rows] what each row's rest and slopes are multiplied by
+    struct dig_air         *air;
+    size_t                  columns;
+    struct dig_lines_column column[DIG_LINES_COLUMNS_MAX];
+    double                  at[DIG_LINES_COLUMNS_MAX];     // in scales from absent
+    double                  absent[DIG_LINES_COLUMNS_MAX]; // 0
+    size_t                  digs;                          // those of the air, in its order
+    size_t                  dig[DIG_LINES_SEGMENTS_MAX];   // which of them a segment is of
+    struct dig_lines_normal normal[DIG_MEASURED_MAX];      // of each dig
+    double                 *trust;      // [rows] what each row's rest and slopes are multiplied by
+    double                 *work;       // [3 + columns][rows]; no function keeps anything there
+    struct dig_correction  *correction; // [segments]; the same
 };
 
 /// Adds a payload of one's own, which lies where the common one does; where there is hardly any, in
@@ -52,38 +61,34 @@ struct dig_lines {
 void dig_lines_carry(double own_kg, const struct dig_added_mass *common,
                      struct dig_added_mass *payload);
 
-/// Lines up the parameters at their absent values. The air must outlive it. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air *air, struct dig_lines *lines);
-
-/// The same with what a file may have wrong besides as columns of these scales, as the array that
-/// struct dig_file_error is; they are in air->file where the lines stand.
-DIG_MUST_CHECK enum dig_status dig_lines_make_with_file(struct dig_air   *air,
-                                                        const double      scale[DIG_FILE_ERRORS],
-                                                        struct dig_lines *lines);
+/// Lines up the parameters at their absent values. The air must outlive it. file_scale, unless
+/// NULL: with what a file may have wrong besides as columns of these scales, as the array that
+/// struct dig_file_error is; they are in air->file where the lines stand. DIG_ENOMEM:
+/// *lines is empty then.
+DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air   *air,
+                                              const double      file_scale[DIG_FILE_ERRORS],
+                                              struct dig_lines *lines);
 
 void dig_lines_finish(struct dig_lines *lines);
 
 /// Makes the equations linear around at, for the effects of the set (a bit each); columns of others
 /// count as without effect. Two evaluations of the air a column: some tenths of a second for all.
-/// DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lines_update(struct dig_lines *lines, unsigned set);
+void dig_lines_update(struct dig_lines *lines, unsigned set);
 
 /// Trusts every row as far as the form of what is explained of it where the lines stand can be
-/// trusted, and tells how much is left in the means of segments: chi-squared, one degree of freedom
-/// for every segment and joint. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lines_judge(struct dig_lines *lines, double *slow);
+/// trusted. How much is left in the means of segments: chi-squared, one degree of freedom for every
+/// segment and joint.
+double dig_lines_judge(struct dig_lines *lines);
 
 /// What is left of every row in its sigmas at other values, not linear, trusted or not: rest[rows].
-/// DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_lines_rest(const struct dig_lines *lines, const double at[],
-                                              double rest[]);
+void dig_lines_rest(const struct dig_lines *lines, const double at[], double rest[]);
 
 /// The corrections of all segments at these values, correction[segments], and into air->file what
 /// the file has wrong there.
 void dig_lines_correct(const struct dig_lines *lines, const double at[],
                        struct dig_correction correction[]);
 
-/// The sum of rest^2 at other values, as far as rows are trusted. INFINITY when there is no memory.
+/// The sum of rest^2 at other values, as far as rows are trusted.
 double dig_lines_rest2(const struct dig_lines *lines, const double at[]);
 
 /// True for a column that only counts once its effect is in: the speed of a Stribeck friction.

@@ -56,33 +56,24 @@ static double scatter_of(const struct dig_air *const air, const double rest[],
                 more_two_apart * difference(air, rest, joint, 1, room));
 }
 
-enum dig_status dig_machine_noise_widen(struct dig_lines *const lines, const double at[],
-                                        bool *const widened)
+bool dig_machine_noise_widen(struct dig_lines *const lines, const double at[])
 {
-    assert(lines != NULL && at != NULL && widened != NULL);
-    struct dig_air *const air  = lines->air;
-    const size_t          rows = air->rows + 1;
-
-    double *const   none   = calloc(lines->columns + 1, sizeof *none);
-    double *const   room   = malloc(3 * rows * sizeof *room);
-    enum dig_status status = none != NULL && room != NULL ? DIG_OK : DIG_ENOMEM;
-    if (status == DIG_OK) {
-        status = dig_lines_rest(lines, none, room + rows);
-    }
-    if (status == DIG_OK) {
-        status = dig_lines_rest(lines, at, room + 2 * rows);
-    }
-    *widened = false;
-    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+    assert(lines != NULL && at != NULL);
+    struct dig_air *const air     = lines->air;
+    double *const         room    = lines->work;
+    double *const         plain   = room + air->rows;
+    double *const         left    = room + 2 * air->rows;
+    bool                  widened = false;
+    dig_lines_rest(lines, lines->absent, plain);
+    dig_lines_rest(lines, at, left);
+    for (int j = 0; j < DIG_JOINTS; j++) {
         const enum dig_joint joint = (enum dig_joint)j;
-        const double         more  = fmin(scatter_of(air, room + rows, joint, room),
-                                          scatter_of(air, room + 2 * rows, joint, room));
+        const double         more =
+            fmin(scatter_of(air, plain, joint, room), scatter_of(air, left, joint, room));
         for (size_t r = 0; r < air->rows && more > least_more; r++) {
             air->row[r].sigma_N *= air->row[r].joint == joint ? more : 1.0;
         }
-        *widened = *widened || more > least_more;
+        widened = widened || more > least_more;
     }
-    free(none);
-    free(room);
-    return status;
+    return widened;
 }

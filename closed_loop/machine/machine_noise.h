@@ -11,8 +11,7 @@
 /// more: 1.48 / sqrt(2) times the median difference of blocks two apart (1.2 times that of
 /// neighbours, if less), which slow causes, and those that come or go in few places, leave as it
 /// is. Of the rows as they are and with the values at taken off (those that explain most, rightly
-/// or not) the smaller counts. *widened: any sigma has grown. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_machine_noise_widen(struct dig_lines *lines, const double at[],
-                                                       bool *widened);
+/// or not) the smaller counts. True: any sigma has grown.
+bool dig_machine_noise_widen(struct dig_lines *lines, const double at[]);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_NOISE_H

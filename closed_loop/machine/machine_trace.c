@@ -4,7 +4,7 @@
 #include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_side_private.h"
-#include "closed_loop/numeric/dense.h"
+#include "closed_loop/numeric/chance.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -26,8 +26,6 @@ static void search_finish(struct dig_machine_search *const s)
     dig_fit_finish(&s->fit);
     dig_lines_finish(&s->lines);
     dig_air_finish(&s->air);
-    free(s->at);
-    free(s->sigma);
     free(s->covariance);
 }
 
@@ -37,16 +35,14 @@ static enum dig_status search_make(const struct dig_machine_side *const side,
     enum dig_status status =
         dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
     if (status == DIG_OK) {
-        status = dig_lines_make(&s->air, &s->lines);
+        status = dig_lines_make(&s->air, NULL, &s->lines);
     }
     if (status == DIG_OK) {
         status = dig_fit_make(&s->lines, &s->fit);
     }
     if (status == DIG_OK) {
-        s->at         = calloc(s->lines.columns, sizeof(double));
-        s->sigma      = calloc(s->lines.columns, sizeof(double));
-        s->covariance = calloc(s->lines.columns * s->lines.columns, sizeof(double));
-        status = s->at != NULL && s->sigma != NULL && s->covariance != NULL ? DIG_OK : DIG_ENOMEM;
+        s->covariance = malloc(s->lines.columns * s->lines.columns * sizeof(double));
+        status        = s->covariance != NULL ? DIG_OK : DIG_ENOMEM;
     }
     return status;
 }
@@ -71,15 +67,12 @@ static double penalty(const struct dig_machine_search *const s, const double at[
 }
 
 // Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
-static enum dig_status refine(struct dig_machine_search *const s)
+static void refine(struct dig_machine_search *const s)
 {
     const size_t n = s->lines.columns;
     for (int i = 0; i < REFINEMENTS; i++) {
-        const enum dig_status status = dig_lines_update(&s->lines, s->set);
-        if (status != DIG_OK) {
-            return status;
-        }
         const double s2 = s->fit.s2;
+        dig_lines_update(&s->lines, s->set);
         sum_all(s);
         s->fit.s2                    = s2; // of all effects together, which these are not
         struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
@@ -105,45 +98,36 @@ static enum dig_status refine(struct dig_machine_search *const s)
             break;
         }
     }
-    enum dig_status status = dig_lines_judge(&s->lines, &s->slow);
-    if (status == DIG_OK) {
-        s->rest2 = dig_lines_rest2(&s->lines, s->lines.at);
-        status   = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
-    }
-    if (status == DIG_OK) {
-        sum_all(s);
-    }
-    return status;
+    s->slow  = dig_lines_judge(&s->lines);
+    s->rest2 = dig_lines_rest2(&s->lines, s->lines.at);
+    dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    sum_all(s);
 }
 
 // The equations without any effect, rows as far as their own scatter lets them be known.
-static enum dig_status begin(struct dig_machine_search *const s)
+static void begin(struct dig_machine_search *const s)
 {
-    bool            widened = false;
-    enum dig_status status  = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
-    if (status == DIG_OK) {
-        struct dig_fit_answer all = { .at = s->at };
-        sum_all(s);
-        dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
-        status = dig_machine_noise_widen(&s->lines, s->at, &widened);
-    }
-    if (status == DIG_OK && widened) {
-        status = dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    struct dig_fit_answer all = { .at = s->at };
+    dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
+    sum_all(s);
+    dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+    s->noise2 = 1.0;
+    if (dig_machine_noise_widen(&s->lines, s->at)) {
+        s->noise2 = own_noise;
+        dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
         sum_all(s);
     }
-    s->noise2 = widened ? own_noise : 1.0;
-    return status == DIG_OK ? dig_lines_judge(&s->lines, &s->slow) : status;
+    s->slow = dig_lines_judge(&s->lines);
 }
 
 // What is left of the rows of each dig where the lines stand, for a report.
-static enum dig_status rest_by_dig(struct dig_machine_search *const s)
+static void rest_by_dig(struct dig_machine_search *const s)
 {
-    double *const   rest                    = malloc((s->air.rows + 1) * sizeof *rest);
-    double          count[DIG_MEASURED_MAX] = { 0.0 };
-    double          sum[DIG_MEASURED_MAX]   = { 0.0 };
-    enum dig_status status =
-        rest != NULL ? dig_lines_rest(&s->lines, s->lines.at, rest) : DIG_ENOMEM;
-    for (size_t r = 0; r < s->air.rows && status == DIG_OK; r++) {
+    double *const rest                    = s->lines.work;
+    double        count[DIG_MEASURED_MAX] = { 0.0 };
+    double        sum[DIG_MEASURED_MAX]   = { 0.0 };
+    dig_lines_rest(&s->lines, s->lines.at, rest);
+    for (size_t r = 0; r < s->air.rows; r++) {
         const size_t d = s->air.segment[s->air.row[r].segment].dig;
         sum[d] += pow(s->lines.trust[r] * rest[r], 2.0);
         count[d] += 1.0;
@@ -151,8 +135,6 @@ static enum dig_status rest_by_dig(struct dig_machine_search *const s)
     for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
         s->none_of[d] = count[d] > 0.0 ? sqrt(sum[d] / count[d]) : (double)NAN;
     }
-    free(rest);
-    return status;
 }
 
 // In scales.
@@ -170,11 +152,11 @@ static double common_payload(const struct dig_machine_search *const s)
 
 // A first dig that carried more than the others looks like a bucket that is heavier and carries
 // less than nothing.
-static enum dig_status take_weight_for_payload(struct dig_machine_search *const s)
+static void take_weight_for_payload(struct dig_machine_search *const s)
 {
     static const unsigned weighs = 1U << DIG_EFFECT_BUCKET_WEIGHT;
     if ((s->set & weighs) == 0 || !(common_payload(s) < 0.0)) {
-        return DIG_OK;
+        return;
     }
     s->set &= ~weighs;
     for (size_t c = 0; c < s->lines.columns; c++) {
@@ -182,23 +164,18 @@ static enum dig_status take_weight_for_payload(struct dig_machine_search *const 
                           s->lines.column[c].effect == DIG_EFFECT_PAYLOAD;
         s->lines.at[c] = gone ? 0.0 : s->lines.at[c];
     }
-    return refine(s);
+    refine(s);
 }
 
 // Effects join until none earns its place.
-static enum dig_status select_effects(struct dig_machine_search *const s)
+static void select_effects(struct dig_machine_search *const s)
 {
-    static const unsigned rubs   = 1U << DIG_EFFECT_CYLINDER_FRICTION;
-    enum dig_status       status = begin(s);
-    if (status == DIG_OK) {
-        status = rest_by_dig(s);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
+    static const unsigned rubs = 1U << DIG_EFFECT_CYLINDER_FRICTION;
+    begin(s);
+    rest_by_dig(s);
     s->rest2_none = dig_lines_rest2(&s->lines, s->lines.at);
     s->rest2      = s->rest2_none;
-    for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
+    for (int round = 0; round < ROUNDS; round++) {
         // Where the first steps have led, others may do better, and some may not be needed.
         const unsigned before = s->set;
         const unsigned anew   = dig_fit_select(&s->fit, s->least, 0);
@@ -211,19 +188,9 @@ static enum dig_status select_effects(struct dig_machine_search *const s)
         if (s->set == before) {
             break;
         }
-        status = refine(s);
+        refine(s);
     }
-    return status == DIG_OK ? take_weight_for_payload(s) : status;
-}
-
-// SplitMix64 (Steele, Lea, Flood 2014).
-static uint64_t next(uint64_t *const state)
-{
-    *state += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t z = *state;
-    z          = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z          = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return z ^ (z >> 31);
+    take_weight_for_payload(s);
 }
 
 // How often each effect is chosen when the digs are drawn anew.
@@ -234,7 +201,7 @@ static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
     for (int b = 0; b < BOOTSTRAPS; b++) {
         double weight[DIG_MEASURED_MAX] = { 0.0 };
         for (size_t d = 0; d < s->lines.digs; d++) {
-            weight[next(&seed) % s->lines.digs] += 1.0;
+            weight[dig_chance_index(&seed, s->lines.digs)] += 1.0;
         }
         dig_fit_sum(&s->fit, weight);
         const unsigned set = dig_fit_select(&s->fit, s->least, 0);
@@ -257,14 +224,13 @@ static bool is_makeshift(const struct dig_machine_search *const s)
 }
 
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
-static enum dig_status doubt_names(struct dig_machine_search *const s)
+static void doubt_names(struct dig_machine_search *const s)
 {
-    const enum dig_status status = dig_machine_drift_ask(&s->lines, s->fit.s2, &s->drift);
+    s->drift = dig_machine_drift_ask(&s->lines, s->fit.s2);
     if (s->set == 0 || !(s->drift.log_lead > DIG_MACHINE_TIE) ||
         s->drift.log_evidence < dig_fit_evidence(&s->fit, s->set)) {
         s->drift.follows = NULL;
     }
-    return status;
 }
 
 enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
@@ -273,7 +239,7 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
 {
     assert(side != NULL && finding != NULL && false_alarm > 0.0);
     struct dig_machine_search s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
-    enum dig_status           status = search_make(side, &s);
+    const enum dig_status     status = search_make(side, &s);
     if (status == DIG_OK && s.air.rows == 0) {
         *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
                                                  .no_air       = true,
@@ -281,16 +247,9 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
         for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
             finding->residual_air_of[d] = (double)NAN;
         }
-        search_finish(&s);
-        return DIG_OK;
-    }
-    if (status == DIG_OK) {
-        status = select_effects(&s);
-    }
-    if (status == DIG_OK) {
-        status = doubt_names(&s);
-    }
-    if (status == DIG_OK) {
+    } else if (status == DIG_OK) {
+        select_effects(&s);
+        doubt_names(&s);
         const double rows    = (double)s.air.rows;
         const double means   = (double)(DIG_JOINTS * s.air.segments);
         const bool   unclear = s.rest2 > s.noise2 * DIG_MACHINE_UNCLEAR_REST2 * rows ||
