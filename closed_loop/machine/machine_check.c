@@ -43,8 +43,9 @@ static enum dig_status copy(const struct dig_machine_recording *const recording,
     return DIG_OK;
 }
 
-static void ask(struct dig_machine_air_check *const check, const enum dig_check_question question,
-                const int joint, const bool as_filed, const double other_sigmas)
+static struct dig_check_item *ask(struct dig_machine_air_check *const check,
+                                  const enum dig_check_question question, const int joint,
+                                  const bool as_filed, const double other_sigmas)
 {
     struct dig_check_item *const item = dig_check_add(check, question, joint);
     item->value                       = other_sigmas;
@@ -53,6 +54,7 @@ static void ask(struct dig_machine_air_check *const check, const enum dig_check_
     item->verdict                     = as_filed ? (told ? DIG_CHECK_OK : DIG_CHECK_UNTOLD)
                                         : told   ? DIG_CHECK_WRONG
                                                  : DIG_CHECK_DOUBTFUL;
+    return item;
 }
 
 // One question of every joint, so that the list reads joint by joint within a question.
@@ -64,49 +66,55 @@ static void check_reading(const struct dig_reading_finding *const f,
     dig_check_add(check, DIG_CHECK_DEGREES, -1)->verdict =
         best->degrees ? DIG_CHECK_WRONG : DIG_CHECK_OK;
     for (int j = 0; j < DIG_JOINTS; j++) {
-        ask(check, DIG_CHECK_DIRECTION, j, !best->turned[j], f->turned_sigmas[j]);
+        (void)ask(check, DIG_CHECK_DIRECTION, j, !best->turned[j],
+                  f->sigmas[DIG_READING_TURNED][j]);
     }
     for (int j = 0; j < DIG_JOINTS; j++) {
-        ask(check, DIG_CHECK_CYLINDER, j, best->drive[j] == (enum dig_joint)j, f->drive_sigmas[j]);
-        check->item[check->items - 1].answer = (int)best->drive[j];
+        ask(check, DIG_CHECK_CYLINDER, j, best->drive[j] == (enum dig_joint)j,
+            f->sigmas[DIG_READING_DRIVE][j])
+            ->answer = (int)best->drive[j];
     }
     for (int j = 0; j < DIG_JOINTS; j++) {
-        ask(check, DIG_CHECK_SIDES, j, !best->swapped[j], f->swapped_sigmas[j]);
+        (void)ask(check, DIG_CHECK_SIDES, j, !best->swapped[j], f->sigmas[DIG_READING_SWAPPED][j]);
     }
     for (int j = 0; j < DIG_JOINTS; j++) {
-        ask(check, DIG_CHECK_UNIT, j, !(fabs(best->factor[j] - 1.0) > 0.0), f->factor_sigmas[j]);
-        check->item[check->items - 1].value = best->factor[j];
+        ask(check, DIG_CHECK_UNIT, j, !(fabs(best->factor[j] - 1.0) > 0.0),
+            f->sigmas[DIG_READING_FACTOR][j])
+            ->value = best->factor[j];
     }
 }
 
-static size_t item_of(const struct dig_machine_air_check *const check, const int cause)
+// The line that asks about causes of a kind.
+static const enum dig_check_question question_of[DIG_CAUSE_KINDS] = {
+    [DIG_CAUSE_ZERO]   = DIG_CHECK_ZERO,
+    [DIG_CAUSE_FACTOR] = DIG_CHECK_FACTOR,
+    [DIG_CAUSE_OFFSET] = DIG_CHECK_OFFSET,
+    [DIG_CAUSE_WEIGHT] = DIG_CHECK_WEIGHT,
+};
+
+static struct dig_check_item *item_of(struct dig_machine_air_check *const check, const int cause)
 {
-    static const enum dig_check_question of[DIG_CAUSE_KINDS] = {
-        [DIG_CAUSE_ZERO]   = DIG_CHECK_ZERO,
-        [DIG_CAUSE_FACTOR] = DIG_CHECK_FACTOR,
-        [DIG_CAUSE_OFFSET] = DIG_CHECK_OFFSET,
-        [DIG_CAUSE_WEIGHT] = DIG_CHECK_WEIGHT,
-    };
-    size_t i = 0;
-    while (i < check->items &&
-           !(cause == (int)DIG_CAUSE_DELAY ? check->item[i].question == DIG_CHECK_DELAY
-                                           : check->item[i].question == of[cause / DIG_JOINTS] &&
-                                                 check->item[i].of == cause % DIG_JOINTS)) {
-        i++;
+    const bool                    late = cause == (int)DIG_CAUSE_DELAY;
+    const enum dig_check_question question =
+        late ? DIG_CHECK_DELAY : question_of[cause / DIG_JOINTS];
+
+    struct dig_check_item *item = check->item;
+    while (item->question != question || (!late && item->of != cause % DIG_JOINTS)) {
+        item++;
     }
-    return i;
+    return item;
 }
 
-static void check_cause(const struct dig_causes *const causes, const size_t k, const bool asked,
-                        const double coarse, struct dig_machine_air_check *const check,
-                        const enum dig_check_question question, const int joint)
+static struct dig_check_item *check_cause(const struct dig_cause *const cause, const bool asked,
+                                          const double                        coarse,
+                                          struct dig_machine_air_check *const check,
+                                          const enum dig_check_question question, const int joint)
 {
-    const struct dig_cause *const cause = &causes->cause[k];
-    struct dig_check_item *const  item  = dig_check_add(check, question, joint);
-    item->value                         = cause->value + coarse;
-    item->sigma                         = cause->sigma;
-    item->tolerance                     = cause->tolerance;
-    item->excess                        = fabs(item->value) / hypot(cause->sigma, cause->tolerance);
+    struct dig_check_item *const item = dig_check_add(check, question, joint);
+    item->value                       = cause->value + coarse;
+    item->sigma                       = cause->sigma;
+    item->tolerance                   = cause->tolerance;
+    item->excess                      = fabs(item->value) / hypot(cause->sigma, cause->tolerance);
     // A zero that the reading took off in whole steps is wrong whatever the fit adds to it.
     const bool named = cause->named || fabs(coarse) > 0.0;
     item->verdict    = !asked                                    ? DIG_CHECK_UNTOLD
@@ -114,40 +122,36 @@ static void check_cause(const struct dig_causes *const causes, const size_t k, c
                        : cause->sigma > vague * cause->tolerance ? DIG_CHECK_UNTOLD
                        : item->excess > told_sigmas              ? DIG_CHECK_DOUBTFUL
                                                                  : DIG_CHECK_OK;
+    return item;
 }
 
 static void check_causes(const struct dig_machine *const machine,
                          const struct dig_causes *const causes, const bool moves[DIG_JOINTS],
                          struct dig_machine_air_check *const check)
 {
-    static const enum dig_check_question questions[DIG_CAUSE_KINDS] = {
-        [DIG_CAUSE_ZERO]   = DIG_CHECK_ZERO,
-        [DIG_CAUSE_FACTOR] = DIG_CHECK_FACTOR,
-        [DIG_CAUSE_OFFSET] = DIG_CHECK_OFFSET,
-        [DIG_CAUSE_WEIGHT] = DIG_CHECK_WEIGHT,
-    };
     for (size_t kind = 0; kind < DIG_CAUSE_KINDS; kind++) {
         for (size_t j = 0; j < DIG_JOINTS; j++) {
+            const struct dig_cylinder *const cylinder = &machine->cylinder[j];
+
             const bool   told   = moves[j] && isfinite(causes->rest[j]);
             const double coarse = kind == DIG_CAUSE_ZERO ? check->reading.best.zero_rad[j] : 0.0;
-            check_cause(causes, DIG_JOINTS * kind + j, told, coarse, check, questions[kind],
-                        (int)j);
-            check->item[check->items - 1].at_rod = -check->item[check->items - 1].value *
-                                                   dig_cylinder_head_m2(&machine->cylinder[j]) /
-                                                   dig_cylinder_rod_m2(&machine->cylinder[j]);
+            struct dig_check_item *const item =
+                check_cause(&causes->cause[DIG_JOINTS * kind + j], told, coarse, check,
+                            question_of[kind], (int)j);
+            item->at_rod =
+                -item->value * dig_cylinder_head_m2(cylinder) / dig_cylinder_rod_m2(cylinder);
         }
     }
-    check_cause(causes, DIG_CAUSE_DELAY, true, 0.0, check, DIG_CHECK_DELAY, -1);
+    (void)check_cause(&causes->cause[DIG_CAUSE_DELAY], true, 0.0, check, DIG_CHECK_DELAY, -1);
     for (size_t k = 0; k < DIG_CAUSES; k++) {
         const int or_cause = causes->cause[k].or_cause;
-        if (!causes->cause[k].named || or_cause < 0) {
-            continue;
+        if (causes->cause[k].named && or_cause >= 0) {
+            struct dig_check_item *const mine  = item_of(check, (int)k);
+            struct dig_check_item *const other = item_of(check, or_cause);
+            mine->or_item                      = (int)(other - check->item);
+            other->or_item                     = (int)(mine - check->item);
+            other->verdict                     = DIG_CHECK_DOUBTFUL;
         }
-        struct dig_check_item *const mine  = &check->item[item_of(check, (int)k)];
-        struct dig_check_item *const other = &check->item[item_of(check, or_cause)];
-        mine->or_item                      = (int)(other - check->item);
-        other->or_item                     = (int)(mine - check->item);
-        other->verdict                     = DIG_CHECK_DOUBTFUL;
     }
 }
 
@@ -235,14 +239,9 @@ static void find_motion(const struct dig_machine_dig *const dig, const bool degr
 {
     const double unit = degrees ? DIG_RAD_PER_DEG : 1.0;
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        double low  = INFINITY;
-        double high = -INFINITY;
-        for (size_t i = 0; i < dig->samples; i++) {
-            const double rad = unit * dig->sample[i].value[(size_t)DIG_SIGNAL_BOOM_rad + j];
-            low              = fmin(low, rad);
-            high             = fmax(high, rad);
-        }
-        moves[j] = high - low >= DIG_CHECK_LEAST_TURN_rad;
+        double range[2];
+        dig_check_range(dig->samples, dig->sample, DIG_SIGNAL_BOOM_rad + j, range);
+        moves[j] = unit * range[1] - unit * range[0] >= DIG_CHECK_LEAST_TURN_rad;
     }
 }
 

@@ -14,6 +14,10 @@
 struct dig_check_item *dig_check_add(struct dig_machine_air_check *check,
                                      enum dig_check_question question, int of);
 
+/// Least and most of a signal's valid readings.
+void dig_check_range(size_t samples, const struct dig_sample sample[], size_t signal,
+                     double range[2]);
+
 /// Times, gaps and what is missing.
 void dig_check_recording(const struct dig_machine_recording *recording,
                          struct dig_machine_air_check       *check);

@@ -24,6 +24,26 @@ static const double much_turn_rad = 10.0 * DIG_RAD_PER_DEG;
 static const double little_rad = 0.5 * DIG_RAD_PER_DEG; // beyond a limit
 static const double much_rad   = 2.0 * DIG_RAD_PER_DEG;
 
+struct dig_check_item *dig_check_add(struct dig_machine_air_check *const check,
+                                     const enum dig_check_question question, const int of)
+{
+    assert(check->items < DIG_CHECK_ITEMS_MAX);
+    struct dig_check_item *const item = &check->item[check->items++];
+    *item                             = (struct dig_check_item){
+                                    .question  = question,
+                                    .of        = of,
+                                    .value     = (double)NAN,
+                                    .sigma     = (double)NAN,
+                                    .tolerance = (double)NAN,
+                                    .excess    = (double)NAN,
+                                    .share     = (double)NAN,
+                                    .at_rod    = (double)NAN,
+                                    .answer    = of,
+                                    .or_item   = -1,
+    };
+    return item;
+}
+
 static void check_times(const struct dig_machine_recording *const recording,
                         struct dig_machine_air_check *const       check)
 {
@@ -91,18 +111,17 @@ static bool longest(const struct dig_machine_recording *const recording, const s
     return changes;
 }
 
-static double turn_rad(const struct dig_machine_recording *const recording, const size_t joint)
+void dig_check_range(const size_t samples, const struct dig_sample sample[], const size_t signal,
+                     double range[2])
 {
-    const size_t s    = (size_t)DIG_SIGNAL_BOOM_rad + joint;
-    double       low  = INFINITY;
-    double       high = -INFINITY;
-    for (size_t i = 0; i < recording->rows; i++) {
-        if (recording->row[i].valid[s]) {
-            low  = fmin(low, recording->row[i].value[s]);
-            high = fmax(high, recording->row[i].value[s]);
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t i = 0; i < samples; i++) {
+        if (sample[i].valid[signal]) {
+            range[0] = fmin(range[0], sample[i].value[signal]);
+            range[1] = fmax(range[1], sample[i].value[signal]);
         }
     }
-    return high - low;
 }
 
 void dig_check_stuck(const struct dig_machine *const     machine,
@@ -119,7 +138,9 @@ void dig_check_stuck(const struct dig_machine *const     machine,
         struct stretch most;
         const bool     changes = longest(recording, s, &most);
         const bool     noisy   = sigma > 0.0 && sigma >= noise_share * step;
-        const bool     turns   = !angle && turn_rad(recording, joint) > much_turn_rad;
+        double         range[2];
+        dig_check_range(recording->rows, recording->row, DIG_SIGNAL_BOOM_rad + joint, range);
+        const bool turns = !angle && range[1] - range[0] > much_turn_rad;
         if (!(most.s > stuck_s) || !(noisy || (!changes && turns))) {
             continue;
         }
@@ -155,21 +176,15 @@ static void check_moves(const struct dig_machine_dig *const dig, const size_t j,
                         struct dig_machine_air_check *const check)
 {
     double *const range_rad = check->angles_rad[j];
-    range_rad[0]            = INFINITY;
-    range_rad[1]            = -INFINITY;
-    for (size_t i = 0; i < dig->samples; i++) {
-        const double rad = dig->sample[i].value[(size_t)DIG_SIGNAL_BOOM_rad + j];
-        range_rad[0]     = fmin(range_rad[0], rad);
-        range_rad[1]     = fmax(range_rad[1], rad);
-    }
+    dig_check_range(dig->samples, dig->sample, DIG_SIGNAL_BOOM_rad + j, range_rad);
     struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_MOVES, (int)j);
     item->value                       = range_rad[1] - range_rad[0];
     item->tolerance                   = DIG_CHECK_LEAST_TURN_rad;
     item->verdict = item->value >= DIG_CHECK_LEAST_TURN_rad ? DIG_CHECK_OK : DIG_CHECK_UNTOLD;
 }
 
-static void check_range(const struct dig_machine *const machine, const size_t j,
-                        struct dig_machine_air_check *const check)
+static void check_limits(const struct dig_machine *const machine, const size_t j,
+                         struct dig_machine_air_check *const check)
 {
     const double most_rad = fmax(beyond_rad(machine, j, check->angles_rad[j][0]),
                                  beyond_rad(machine, j, check->angles_rad[j][1]));
@@ -199,6 +214,6 @@ void dig_check_motion(const struct dig_machine *const     machine,
         check_moves(dig, j, check);
     }
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        check_range(machine, j, check);
+        check_limits(machine, j, check);
     }
 }

@@ -91,12 +91,9 @@ struct search {
     bool                      told[DIG_JOINTS]; // columns that hold both pressures
     struct dig_air_point     *at;               // angles in radians
     struct dig_reading        best;
-    double                    cost;
-    // The least cost with each answer.
-    double turned[DIG_JOINTS][2];
-    double drive[DIG_JOINTS][DIG_JOINTS];
-    double swapped[DIG_JOINTS][2];
-    double factor[DIG_JOINTS][FACTORS];
+    size_t                    answer[DIG_READING_QUESTIONS][DIG_JOINTS];         // of the best
+    double                    cost;                                              // of the best
+    double                    least[DIG_READING_QUESTIONS][DIG_JOINTS][FACTORS]; // with each answer
 };
 
 bool dig_reading_in_degrees(const struct dig_machine_dig *const dig)
@@ -240,28 +237,6 @@ static double misfit(const struct search *const s, const struct sums *const sums
     return 0.5 * (fmax(chi2, 0.0) + missing);
 }
 
-static void keep_least(double *const kept, const double cost)
-{
-    if (cost < *kept) {
-        *kept = cost;
-    }
-}
-
-static void keep(struct search *const s, const struct dig_reading *const reading,
-                 const size_t factor[DIG_JOINTS], const double cost)
-{
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        keep_least(&s->turned[j][reading->turned[j] ? 1 : 0], cost);
-        keep_least(&s->drive[j][reading->drive[j]], cost);
-        keep_least(&s->swapped[j][reading->swapped[j] ? 1 : 0], cost);
-        keep_least(&s->factor[j][factor[j]], cost);
-    }
-    if (cost < s->cost) {
-        s->cost = cost;
-        s->best = *reading;
-    }
-}
-
 typedef double costs[DIG_JOINTS][DIG_JOINTS][2][FACTORS];
 
 // How the pressures of one drive are read.
@@ -296,16 +271,27 @@ static struct answer best_answer(const struct search *const s, costs cost, const
     return best;
 }
 
-static void keep_answers(struct search *const s, struct dig_reading reading,
-                         const struct answer answer[DIG_JOINTS], const double cost)
+static void keep(struct search *const s, struct dig_reading reading,
+                 const struct answer answer[DIG_JOINTS], const double cost)
 {
-    size_t factor[DIG_JOINTS];
+    size_t given[DIG_READING_QUESTIONS][DIG_JOINTS];
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        reading.swapped[j] = answer[j].swapped > 0;
-        reading.factor[j]  = factors[answer[j].factor];
-        factor[j]          = answer[j].factor;
+        reading.swapped[j]            = answer[j].swapped > 0;
+        reading.factor[j]             = factors[answer[j].factor];
+        given[DIG_READING_TURNED][j]  = reading.turned[j] ? 1 : 0;
+        given[DIG_READING_DRIVE][j]   = reading.drive[j];
+        given[DIG_READING_SWAPPED][j] = answer[j].swapped;
+        given[DIG_READING_FACTOR][j]  = answer[j].factor;
+        for (size_t q = 0; q < DIG_READING_QUESTIONS; q++) {
+            double *const least = &s->least[q][j][given[q][j]];
+            *least              = cost < *least ? cost : *least;
+        }
     }
-    keep(s, &reading, factor, cost);
+    if (cost < s->cost) {
+        s->cost = cost;
+        s->best = reading;
+        memcpy(s->answer, given, sizeof given);
+    }
 }
 
 // One order of the cylinders and one common factor: the best of every drive, and then one other
@@ -319,14 +305,14 @@ static void try_order(struct search *const s, const struct dig_reading *const re
         best[j] = best_answer(s, cost, j, reading->drive[j], common);
         sum += best[j].cost;
     }
-    keep_answers(s, *reading, best, sum);
+    keep(s, *reading, best, sum);
     for (size_t i = 0; i < (size_t)DIG_JOINTS * 2 * FACTORS; i++) {
         const size_t  j               = i % DIG_JOINTS;
         const size_t  w               = i / DIG_JOINTS % 2;
         struct answer one[DIG_JOINTS] = { best[0], best[1], best[2] };
 
         one[j] = answer_of(s, cost, j, reading->drive[j], w, i / DIG_JOINTS / 2, common);
-        keep_answers(s, *reading, one, sum - best[j].cost + one[j].cost);
+        keep(s, *reading, one, sum - best[j].cost + one[j].cost);
     }
 }
 
@@ -394,64 +380,28 @@ static void try_zeros(struct search *const s, struct dig_reading angles, const i
     }
 }
 
-static double worse(const double best, const double other)
-{
-    return isfinite(other) ? sqrt(2.0 * fmax(other - best, 0.0)) : (double)NAN;
-}
-
 // The cost of the columns' own answer, where the best reading has another; else the least of the
 // other answers.
-static double other_of(const size_t answers, const double cost[], const size_t best,
-                       const size_t plain)
+static double other_of(const double cost[FACTORS], const size_t best, const size_t plain)
 {
     double other = INFINITY;
-    for (size_t a = 0; a < answers; a++) {
+    for (size_t a = 0; a < FACTORS; a++) {
         other = a == best ? other : fmin(other, cost[a]);
     }
     return best != plain ? cost[plain] : other;
 }
 
-static size_t factor_of(const double factor)
-{
-    size_t f = 0;
-    while (f + 1 < FACTORS && fabs(factors[f] / factor - 1.0) > 1e-9) {
-        f++;
-    }
-    return f;
-}
-
 static void write_finding(const struct search *const s, struct dig_reading_finding *const finding)
 {
-    *finding = (struct dig_reading_finding){ .best = s->best };
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        const struct dig_reading *const best = &s->best;
+    finding->best = s->best;
+    for (size_t q = 0; q < DIG_READING_QUESTIONS; q++) {
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            const size_t plain = q == DIG_READING_DRIVE ? j : 0;
+            const double other = other_of(s->least[q][j], s->answer[q][j], plain);
 
-        const bool asked = s->moves[j];
-        finding->turned_sigmas[j] =
-            worse(s->cost, asked ? s->turned[j][best->turned[j] ? 0 : 1] : (double)INFINITY);
-        finding->drive_sigmas[j] =
-            worse(s->cost, asked ? other_of(DIG_JOINTS, s->drive[j], best->drive[j], (size_t)j)
-                                 : (double)INFINITY);
-        finding->swapped_sigmas[j] =
-            worse(s->cost, asked ? s->swapped[j][best->swapped[j] ? 0 : 1] : (double)INFINITY);
-        finding->factor_sigmas[j] =
-            worse(s->cost, asked ? other_of(FACTORS, s->factor[j], factor_of(best->factor[j]), 0)
-                                 : (double)INFINITY);
-    }
-}
-
-static void forget(struct search *const s)
-{
-    s->cost = INFINITY;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        for (size_t a = 0; a < 2; a++) {
-            s->turned[j][a] = s->swapped[j][a] = INFINITY;
-        }
-        for (size_t a = 0; a < DIG_JOINTS; a++) {
-            s->drive[j][a] = INFINITY;
-        }
-        for (size_t a = 0; a < FACTORS; a++) {
-            s->factor[j][a] = INFINITY;
+            finding->sigmas[q][j] = s->moves[j] && isfinite(other)
+                                        ? sqrt(2.0 * fmax(other - s->cost, 0.0))
+                                        : (double)NAN;
         }
     }
 }
@@ -471,7 +421,10 @@ enum dig_status dig_reading_find(const struct dig_machine *const machine,
     struct dig_reading angles = dig_reading_plain();
     angles.degrees            = degrees;
     pick(air, degrees, &s);
-    forget(&s);
+    s.cost = INFINITY;
+    for (size_t i = 0; i < sizeof s.least / sizeof(double); i++) {
+        (&s.least[0][0][0])[i] = INFINITY;
+    }
     for (unsigned turned = 0; turned < 1U << DIG_JOINTS; turned++) {
         bool asked = true;
         for (int j = 0; j < DIG_JOINTS; j++) {

@@ -41,15 +41,22 @@ bool dig_reading_in_degrees(const struct dig_machine_dig *dig);
 /// Rewrites every sample so that its columns say what they should.
 void dig_reading_apply(const struct dig_reading *reading, struct dig_machine_recording *recording);
 
+/// What is asked of every joint: does its angle count the other way, in which columns are its
+/// pressures, are head and rod exchanged, by what are they multiplied.
+enum dig_reading_question {
+    DIG_READING_TURNED,
+    DIG_READING_DRIVE,
+    DIG_READING_SWAPPED,
+    DIG_READING_FACTOR,
+    DIG_READING_QUESTIONS
+};
+
 /// The best reading, and by how many sigmas (root of twice the logarithm of the ratio of
 /// likelihoods) the best with another answer to one question is worse: the columns' own answer
 /// where it is not that; NaN where there is no other, or the joint hardly moves and was not asked.
 struct dig_reading_finding {
     struct dig_reading best;
-    double             turned_sigmas[DIG_JOINTS];
-    double             drive_sigmas[DIG_JOINTS];
-    double             swapped_sigmas[DIG_JOINTS];
-    double             factor_sigmas[DIG_JOINTS];
+    double             sigmas[DIG_READING_QUESTIONS][DIG_JOINTS];
 };
 
 /// Finds it in the air of one recording, as its columns say; degrees: its angles are. moves: joints
