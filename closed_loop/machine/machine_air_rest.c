@@ -72,28 +72,16 @@ static const struct dig_air_pose *pose_of(const struct dig_machine *const  corre
     return pose;
 }
 
-// True when two corrections leave levers, masses and delay alike: all that follows the pressures'.
-static bool stand_alike(const struct dig_correction *const a, const struct dig_correction *const b)
+// True when numbers [from, to) of two structs of doubles are the same.
+static bool alike(const void *const a, const void *const b, const size_t from, const size_t to)
 {
-    const size_t        from  = offsetof(struct dig_correction, bucket) / sizeof(double);
-    const double *const one   = (const double *)(const void *)a;
-    const double *const other = (const double *)(const void *)b;
-    bool                alike = true;
-    for (size_t i = from; i < sizeof *a / sizeof(double); i++) {
-        alike = alike && fabs(one[i] - other[i]) <= 0.0;
+    const double *const one   = a;
+    const double *const other = b;
+    size_t              i     = from;
+    while (i < to && fabs(one[i] - other[i]) <= 0.0) {
+        i++;
     }
-    return alike;
-}
-
-static bool filed_alike(const struct dig_file_error *const a, const struct dig_file_error *const b)
-{
-    const double *const one   = (const double *)(const void *)a;
-    const double *const other = (const double *)(const void *)b;
-    bool                alike = true;
-    for (size_t i = 0; i < DIG_FILE_ERRORS; i++) {
-        alike = alike && fabs(one[i] - other[i]) <= 0.0;
-    }
-    return alike;
+    return i == to;
 }
 
 // The machine with its links as heavy as they are.
@@ -180,7 +168,10 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     double(*const more_N)[DIG_JOINTS]           = loss_N + segment->points;
     const struct dig_machine   corrected        = weighed(air, correction);
     struct dig_air_pose *const pose             = &air->pose[segment->first_point];
-    if (!stand_alike(correction, &air->posed[s]) || !filed_alike(&air->file, &air->filed[s])) {
+    // Levers, masses and delay follow all of a correction but the pressures'.
+    const size_t geometry = offsetof(struct dig_correction, bucket) / sizeof(double);
+    if (!alike(correction, &air->posed[s], geometry, sizeof *correction / sizeof(double)) ||
+        !alike(&air->file, &air->filed[s], 0, DIG_FILE_ERRORS)) {
         air->posed[s] = *correction;
         air->filed[s] = air->file;
         for (size_t p = 0; p < segment->points; p++) {

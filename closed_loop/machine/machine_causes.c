@@ -74,35 +74,29 @@ static double weight_tolerance_kg(const struct dig_machine *const machine, const
     return link->mass_kg * hypot(machine->tolerance.mass_share, share);
 }
 
-static double tolerance_of(const struct work *const w, const size_t cause)
-{
-    const size_t joint = cause % DIG_JOINTS;
-    if (cause == DIG_CAUSE_DELAY) {
-        return late_s;
-    }
-    switch ((enum dig_cause_kind)(cause / DIG_JOINTS)) {
-    case DIG_CAUSE_ZERO: return zero_rad;
-    case DIG_CAUSE_FACTOR: return span_share;
-    case DIG_CAUSE_OFFSET: return class_share * cylinder_of(w, joint)->relief_Pa;
-    case DIG_CAUSE_WEIGHT: return weight_tolerance_kg(&w->air->machine, joint);
-    case DIG_CAUSE_KINDS: break;
-    }
-    return (double)NAN;
-}
+// 1 sigma of a cause: within its tolerance, and where it is wrong.
+struct sigmas {
+    double tolerance, wrong;
+};
 
-static double wrong_of(const struct work *const w, const size_t cause)
+static struct sigmas sigmas_of(const struct work *const w, const size_t cause)
 {
+    const struct dig_machine *const machine = &w->air->machine;
+    const size_t                    joint   = cause % DIG_JOINTS;
     if (cause == DIG_CAUSE_DELAY) {
-        return wrong_late_s;
+        return (struct sigmas){ late_s, wrong_late_s };
     }
     switch ((enum dig_cause_kind)(cause / DIG_JOINTS)) {
-    case DIG_CAUSE_ZERO: return wrong_rad;
-    case DIG_CAUSE_FACTOR: return wrong_share;
-    case DIG_CAUSE_OFFSET: return wrong_Pa;
-    case DIG_CAUSE_WEIGHT: return wrong_weight * w->air->machine.link[cause % DIG_JOINTS].mass_kg;
+    case DIG_CAUSE_ZERO: return (struct sigmas){ zero_rad, wrong_rad };
+    case DIG_CAUSE_FACTOR: return (struct sigmas){ span_share, wrong_share };
+    case DIG_CAUSE_OFFSET:
+        return (struct sigmas){ class_share * machine->cylinder[joint].relief_Pa, wrong_Pa };
+    case DIG_CAUSE_WEIGHT:
+        return (struct sigmas){ weight_tolerance_kg(machine, joint),
+                                wrong_weight * machine->link[joint].mass_kg };
     case DIG_CAUSE_KINDS: break;
     }
-    return (double)NAN;
+    return (struct sigmas){ (double)NAN, (double)NAN };
 }
 
 // How much a drive's push changes by one of its chambers, N rms.
@@ -185,10 +179,11 @@ static void set_widths(struct work *const w)
     for (size_t c = 0; c < w->lines.columns; c++) {
         const struct dig_lines_column *const column = &w->lines.column[c];
 
-        const int cause = cause_of(column);
-        w->base[c] =
-            (cause >= 0 ? tolerance_of(w, (size_t)cause) : allowed(w, column)) / column->scale;
-        w->gross[c] = cause >= 0 ? wrong_of(w, (size_t)cause) / column->scale : w->base[c];
+        const int           cause = cause_of(column);
+        const struct sigmas sigma =
+            cause >= 0 ? sigmas_of(w, (size_t)cause) : (struct sigmas){ allowed(w, column), 0.0 };
+        w->base[c]  = sigma.tolerance / column->scale;
+        w->gross[c] = cause >= 0 ? sigma.wrong / column->scale : w->base[c];
         // Of a return side, whose pressure hardly changes, a factor is an offset.
         const bool factor  = cause >= 0 && cause / DIG_JOINTS == (int)DIG_CAUSE_FACTOR;
         const bool returns = factor && is_return_side(w, (size_t)cause % DIG_JOINTS,
@@ -322,6 +317,14 @@ static unsigned find(struct work *const w)
     return named;
 }
 
+// How sure a column is, with the covariance as last solved; 0 where it was not asked.
+static double sureness(const struct work *const w, const size_t column)
+{
+    return w->gross[column] > w->base[column]
+               ? 1.0 / fmax(w->covariance[column * w->lines.columns + column], 1e-12)
+               : 0.0;
+}
+
 // How much a column counts in the figure of its cause, with the covariance as last solved.
 static double share_of(const struct work *const w, const size_t cause, const size_t column)
 {
@@ -336,14 +339,8 @@ static double share_of(const struct work *const w, const size_t cause, const siz
     const size_t chamber = c->parameter % DIG_CHAMBERS;
     if (cause / DIG_JOINTS == DIG_CAUSE_FACTOR) {
         // The mean of the chambers that were asked, as sure as each is.
-        const size_t n     = w->lines.columns;
-        const size_t pair  = chamber == DIG_CHAMBER_HEAD ? column + 1 : column - 1;
-        const double mine  = w->gross[column] > w->base[column]
-                                 ? 1.0 / fmax(w->covariance[column * n + column], 1e-12)
-                                 : 0.0;
-        const double other = w->gross[pair] > w->base[pair]
-                                 ? 1.0 / fmax(w->covariance[pair * n + pair], 1e-12)
-                                 : 0.0;
+        const double mine  = sureness(w, column);
+        const double other = sureness(w, chamber == DIG_CHAMBER_HEAD ? column + 1 : column - 1);
         return mine > 0.0 ? c->scale * mine / (mine + other) : 0.0;
     }
     return chamber == DIG_CHAMBER_HEAD ? c->scale
@@ -393,7 +390,7 @@ static void figures(struct work *const w, const unsigned named, struct dig_cause
     for (unsigned k = 0; k < DIG_CAUSES; k++) {
         const unsigned one = 1U << k;
         value_of(w, named | one, k, &cause[k]);
-        cause[k].tolerance = tolerance_of(w, k);
+        cause[k].tolerance = sigmas_of(w, k).tolerance;
         cause[k].named     = (named & one) != 0;
         cause[k].or_cause  = cause[k].named ? tied(w, named, k) : -1;
     }
