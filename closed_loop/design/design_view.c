@@ -65,8 +65,7 @@ void dig_design_take_gravel_off(const struct dig_design_view *const v, double d[
     for (size_t a = 0; a < DIG_AXES; a++) {
         g[a] = dig_design_product(v->n, v->slope[a], d);
     }
-    dig_lower_solve(DIG_AXES, v->normal_lower, g);
-    dig_lower_transposed_solve(DIG_AXES, v->normal_lower, g);
+    dig_cholesky_solve(DIG_AXES, v->normal_lower, g);
     for (size_t k = 0; k < v->n; k++) {
         for (size_t a = 0; a < DIG_AXES; a++) {
             d[k] -= v->slope[a][k] * g[a];

@@ -117,8 +117,7 @@ static void take_off_steps(const struct dig_likelihood *const l, double mean[], 
             }
         }
     }
-    dig_lower_solve(l->steps, l->step_lower, z);
-    dig_lower_transposed_solve(l->steps, l->step_lower, z);
+    dig_cholesky_solve(l->steps, l->step_lower, z);
     for (size_t k = 0; k < l->steps; k++) {
         double *r = mean;
         for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {

@@ -205,8 +205,7 @@ static void write_covariance(const struct cloud *const c, double covariance[])
         double *const row = covariance + k * l->steps;
         memset(row, 0, l->steps * sizeof row[0]);
         row[k] = 1.0;
-        dig_lower_solve(l->steps, l->step_lower, row);
-        dig_lower_transposed_solve(l->steps, l->step_lower, row);
+        dig_cholesky_solve(l->steps, l->step_lower, row);
         for (size_t m = 0; m < l->steps; m++) {
             row[m] += (c->z_squares[k * l->steps + m] - c->z_sum[k] * c->z_sum[m] / TAKEN) / TAKEN;
         }

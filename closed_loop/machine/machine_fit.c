@@ -54,12 +54,6 @@ static double decompose(const size_t n, double h[])
     return log_det;
 }
 
-static void substitute(const size_t n, const double l[], double x[])
-{
-    dig_lower_solve(n, l, x);
-    dig_lower_transposed_solve(n, l, x);
-}
-
 // The columns of a set that are solved for; how many.
 static size_t columns_of(const struct dig_lines *const lines, const unsigned set, size_t column[])
 {
@@ -87,7 +81,7 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
         x[i] = -share[i] * fit->slope_rest[column[i]] / fit->s2;
     }
     const double log_det = decompose(n, h);
-    substitute(n, h, x);
+    dig_cholesky_solve(n, h, x);
 
     double gain  = 0.0;
     double size2 = 0.0;
@@ -107,7 +101,7 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
         double one[DIG_LINES_COLUMNS_MAX];
         memset(one, 0, n * sizeof one[0]);
         one[i] = 1.0;
-        substitute(n, h, one);
+        dig_cholesky_solve(n, h, one);
         if (answer->sigma != NULL) {
             answer->sigma[column[i]] = share[i] * sqrt(fmax(one[i], 0.0));
         }

@@ -81,24 +81,6 @@ struct dig_gravel dig_response_surface_gravel(const struct dig_response_surface 
     return gravel;
 }
 
-static void mean_of(const struct dig_curve *const curve,
-                    double                        mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
-{
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            mean[c][k] = (double)curve->mean[c][k];
-        }
-    }
-}
-
-static void amplitude_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
-                         double       amplitude[DIG_FORCE_CHANNELS])
-{
-    double feature[DIG_FEATURES];
-    dig_features_of(curve, feature);
-    dig_features_amplitude(feature, NULL, amplitude);
-}
-
 // Packings of an entry that no other entry holds too.
 static double weight_of(const struct dig_curve_set *const set, const size_t entry, const size_t t)
 {
@@ -139,8 +121,7 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
     for (size_t j = 0; j < n; j++) {
         double column[DIG_RESPONSE_SURFACE_TERMS] = { 0.0 };
         column[j]                                 = 1.0;
-        dig_lower_solve(n, normal, column);
-        dig_lower_transposed_solve(n, normal, column);
+        dig_cholesky_solve(n, normal, column);
         for (size_t i = 0; i < n; i++) {
             surface->inverse[t][i][j] = column[i];
         }
@@ -187,11 +168,11 @@ static void fit_amplitudes(struct dig_response_surface *const surface, const siz
         if (set->packings[slot] <= 0) {
             continue;
         }
-        double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double feature[DIG_FEATURES];
         double amplitude[DIG_FORCE_CHANNELS];
         double share[DIG_RESPONSE_SURFACE_TERMS];
-        mean_of(&set->curve[slot], mean);
-        amplitude_of((const double(*)[DIG_CURVE_POINTS])mean, amplitude);
+        dig_features_of_table((const float(*)[DIG_CURVE_POINTS])set->curve[slot].mean, feature);
+        dig_features_amplitude(feature, NULL, amplitude);
         share_of(surface, t, e, share);
         for (size_t j = 0; j < surface->terms; j++) {
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {

@@ -67,14 +67,8 @@ static void describe_bed(const struct dig_soil *const soil, const struct dig_eff
     bed->strength = dig_soil_strength(soil->surface, place, bed->amplitude);
 
     // A dig that is larger with the effect scatters more, and so does one of a strong gravel.
-    double with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double size[DIG_FORCE_CHANNELS];
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            with[c][k] = (double)bed->curve->mean[c][k];
-        }
-    }
-    dig_features_of((const double(*)[DIG_CURVE_POINTS])with, bed->feature);
+    dig_features_of_table(bed->curve->mean, bed->feature);
     dig_features_amplitude(bed->feature, NULL, size);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         bed->feature[f] = (bed->feature[f] - plain[f]) / bed->amplitude[f / DIG_FEATURE_BINS];
@@ -122,8 +116,7 @@ static enum dig_status invert(const size_t beds, const struct bed bed[],
     for (size_t j = 0; j < n && status == DIG_OK; j++) {
         double column[DIG_SOIL_TERMS] = { 0.0 };
         column[j]                     = 1.0;
-        dig_lower_solve(n, normal, column);
-        dig_lower_transposed_solve(n, normal, column);
+        dig_cholesky_solve(n, normal, column);
         for (size_t i = 0; i < n; i++) {
             template->inverse[i][j] = column[i];
         }

@@ -45,9 +45,10 @@ DIG_VECTORS void dig_lower_solve(const size_t n, const double l[], double b[])
     }
 }
 
-// By columns of the transposed, which are rows of l.
-DIG_VECTORS void dig_lower_transposed_solve(const size_t n, const double l[], double b[])
+DIG_VECTORS void dig_cholesky_solve(const size_t n, const double l[], double b[])
 {
+    dig_lower_solve(n, l, b);
+    // By columns of the transposed, which are rows of l.
     for (size_t i = n; i-- > 0;) {
         const double *const row = l + i * n;
         b[i] /= row[i];

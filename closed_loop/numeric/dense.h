@@ -16,8 +16,8 @@ DIG_MUST_CHECK enum dig_status dig_cholesky(size_t n, double a[]);
 /// Solves L x = b in place: x takes b's place. O(n^2 / 2).
 void dig_lower_solve(size_t n, const double l[], double b[]);
 
-/// Solves L' x = b in place.
-void dig_lower_transposed_solve(size_t n, const double l[], double b[]);
+/// Solves L L' x = b in place. O(n^2).
+void dig_cholesky_solve(size_t n, const double l[], double b[]);
 
 /// x = L b, in place.
 void dig_lower_multiply(size_t n, const double l[], double b[]);

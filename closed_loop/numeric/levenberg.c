@@ -94,8 +94,7 @@ static bool take_step(const struct dig_levenberg *const p, const double normal[]
     if (dig_cholesky(n, damped) != DIG_OK) {
         return false;
     }
-    dig_lower_solve(n, damped, step);
-    dig_lower_transposed_solve(n, damped, step);
+    dig_cholesky_solve(n, damped, step);
     double tried[DIG_LEVENBERG_UNKNOWNS];
     for (size_t j = 0; j < n; j++) {
         tried[j] = x[j] + step[j];

@@ -29,6 +29,18 @@ void dig_features_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
     }
 }
 
+void dig_features_of_table(const float curve[DIG_CHANNELS][DIG_CURVE_POINTS],
+                           double      feature[DIG_FEATURES])
+{
+    double wide[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            wide[c][k] = (double)curve[c][k];
+        }
+    }
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])wide, feature);
+}
+
 void dig_features_mask(const bool measured[DIG_FORCE_CHANNELS], const double first,
                        const double last, bool mask[DIG_FEATURES])
 {

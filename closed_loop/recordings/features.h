@@ -18,6 +18,10 @@ void dig_feature_bin(size_t bin, size_t *from, size_t *to);
 void dig_features_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
                      double       feature[DIG_FEATURES]);
 
+/// The same of a table's curve.
+void dig_features_of_table(const float curve[DIG_CHANNELS][DIG_CURVE_POINTS],
+                           double      feature[DIG_FEATURES]);
+
 /// Which features a dig has that was measured from first to last: channels measured, bins that lie
 /// within.
 void dig_features_mask(const bool measured[DIG_FORCE_CHANNELS], double first, double last,

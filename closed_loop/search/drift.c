@@ -111,10 +111,8 @@ static double bend(const struct sizes *const sizes, const size_t groups)
         return 0.0;
     }
     one[last] = 1.0;
-    dig_lower_solve(n, a, b);
-    dig_lower_transposed_solve(n, a, b);
-    dig_lower_solve(n, a, one);
-    dig_lower_transposed_solve(n, a, one);
+    dig_cholesky_solve(n, a, b);
+    dig_cholesky_solve(n, a, one);
     return b[last] / sqrt(one[last]);
 }
 
