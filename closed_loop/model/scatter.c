@@ -31,27 +31,29 @@ double dig_scatter_factor(const struct dig_scatter *const scatter, const size_t 
     return fmin(fmax(factor, least_factor), most_factor);
 }
 
-// Sums the pairs of one residual. Its share of a degree of freedom is 1 - 1 / packings.
-static void add_pairs(const struct dig_scatter_residual *const r, const double weight,
-                      double sum[DIG_FEATURES][DIG_FEATURES])
+// A residual that tells of scatter: of an entry with two packings or more.
+struct told {
+    const struct dig_scatter_residual *of;
+    double                             freedom; // its share of a degree: 1 - 1 / packings
+    size_t                             fold;
+};
+
+// Those along one trajectory; how many.
+static size_t take(const size_t t, const size_t n, const struct dig_scatter_residual r[],
+                   struct told told[])
 {
-    for (size_t i = 0; i < DIG_FEATURES; i++) {
-        for (size_t j = 0; j < DIG_FEATURES; j++) {
-            sum[i][j] += weight * r->value[i] * r->value[j];
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (r[i].trajectory == t && r[i].packings > 1) {
+            // Of an entry with few packings all residuals are held out together: about their mean
+            // they know of each other. Those of an entry with many are held out in turn: it may be
+            // most of the table.
+            const size_t in_turn = r[i].packings >= FOLDS / 2 ? i : r[i].entry;
+            told[count++] =
+                (struct told){ &r[i], 1.0 - 1.0 / (double)r[i].packings, in_turn % FOLDS };
         }
     }
-}
-
-static double freedom_of(const struct dig_scatter_residual *const r)
-{
-    return 1.0 - 1.0 / (double)r->packings;
-}
-
-// Of an entry with few packings all residuals are held out together: about their mean they know of
-// each other. Those of an entry with many are held out in turn: it may be most of the table.
-static size_t fold_of(const struct dig_scatter_residual *const r, const size_t index)
-{
-    return (r->packings >= FOLDS / 2 ? index : r->entry) % FOLDS;
+    return count;
 }
 
 // Mean correlation of all pairs of bins of two channels that are lag apart.
@@ -90,19 +92,27 @@ static void draw_towards_even(double s[DIG_FEATURES][DIG_FEATURES])
     memcpy(s, drawn, sizeof drawn);
 }
 
-// S of the residuals of one trajectory, without those of one fold (fold FOLDS: of all),
-// each over its factor.
+// S of a trajectory's residuals, each over its factor, without those of one fold (fold FOLDS: of
+// all); how many degrees of freedom it is pooled from.
 static double pool(const struct dig_scatter *const scatter, const size_t t, const size_t n,
-                   const struct dig_scatter_residual r[], const size_t without,
+                   const struct told told[], const size_t without,
                    double s[DIG_FEATURES][DIG_FEATURES])
 {
     memset(s, 0, DIG_FEATURES * sizeof s[0]);
     double freedom = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory == t && r[i].packings > 1 && fold_of(&r[i], i) != without) {
-            add_pairs(&r[i], 1.0 / dig_scatter_factor(scatter, t, r[i].strength), s);
-            freedom += freedom_of(&r[i]);
+    for (size_t m = 0; m < n; m++) {
+        if (told[m].fold == without) {
+            continue;
         }
+        const struct dig_scatter_residual *const r = told[m].of;
+
+        const double weight = 1.0 / dig_scatter_factor(scatter, t, r->strength);
+        for (size_t i = 0; i < DIG_FEATURES; i++) {
+            for (size_t j = 0; j < DIG_FEATURES; j++) {
+                s[i][j] += weight * r->value[i] * r->value[j];
+            }
+        }
+        freedom += told[m].freedom;
     }
     for (size_t i = 0; i < DIG_FEATURES; i++) {
         for (size_t j = 0; j < DIG_FEATURES; j++) {
@@ -120,42 +130,45 @@ static void add_floor(double s[DIG_FEATURES][DIG_FEATURES])
     }
 }
 
-// Variance of a residual over that of one dig, averaged over the directions S knows.
-static double size_of(const double                             lower[DIG_FEATURES][DIG_FEATURES],
-                      const struct dig_scatter_residual *const r)
+// The L of S with its floor, in place.
+static enum dig_status decompose(double s[DIG_FEATURES][DIG_FEATURES])
+{
+    add_floor(s);
+    return dig_cholesky(DIG_FEATURES, &s[0][0]);
+}
+
+// Variance of a residual over that of one dig, averaged over the directions S = L L' knows.
+static double size_of(const double lower[DIG_FEATURES][DIG_FEATURES], const struct told *const told)
 {
     double whitened[DIG_FEATURES];
-    memcpy(whitened, r->value, sizeof whitened);
+    memcpy(whitened, told->of->value, sizeof whitened);
     dig_lower_solve(DIG_FEATURES, &lower[0][0], whitened);
     double sum = 0.0;
     for (size_t i = 0; i < DIG_FEATURES; i++) {
         sum += whitened[i] * whitened[i];
     }
-    return sum / DIG_FEATURES / freedom_of(r);
+    return sum / DIG_FEATURES / told->freedom;
 }
 
 // Fits the factor: sizes of residuals over strength, weighted by their freedom.
 static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_t t, const size_t n,
-                                  const struct dig_scatter_residual r[])
+                                  const struct told told[])
 {
     double s[DIG_FEATURES][DIG_FEATURES];
-    (void)pool(scatter, t, n, r, FOLDS, s);
-    add_floor(s);
-    if (dig_cholesky(DIG_FEATURES, &s[0][0]) != DIG_OK) {
+    (void)pool(scatter, t, n, told, FOLDS, s);
+    if (decompose(s) != DIG_OK) {
         return DIG_EINVAL;
     }
     double sum[5] = { 0.0 }; // weight, x, y, xx, xy
     for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory == t && r[i].packings > 1) {
-            const double w = freedom_of(&r[i]);
-            const double y = size_of((const double(*)[DIG_FEATURES])s, &r[i]);
-            const double x = r[i].strength;
-            sum[0] += w;
-            sum[1] += w * x;
-            sum[2] += w * y;
-            sum[3] += w * x * x;
-            sum[4] += w * x * y;
-        }
+        const double w = told[i].freedom;
+        const double y = size_of((const double(*)[DIG_FEATURES])s, &told[i]);
+        const double x = told[i].of->strength;
+        sum[0] += w;
+        sum[1] += w * x;
+        sum[2] += w * y;
+        sum[3] += w * x * x;
+        sum[4] += w * x * y;
     }
     const double mean_x  = sum[1] / sum[0];
     const double mean_y  = sum[2] / sum[0];
@@ -166,48 +179,23 @@ static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_
     return DIG_OK;
 }
 
-// Variance of digs over an S they took part in.
-static double taken_part(const struct dig_scatter *const scatter, const size_t t, const size_t n,
-                         const struct dig_scatter_residual r[])
-{
-    double s[DIG_FEATURES][DIG_FEATURES];
-    double sum     = 0.0;
-    double freedom = 0.0;
-    (void)pool(scatter, t, n, r, FOLDS, s);
-    add_floor(s);
-    if (dig_cholesky(DIG_FEATURES, &s[0][0]) != DIG_OK) {
-        return 1.0;
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory == t && r[i].packings > 1) {
-            sum += freedom_of(&r[i]) * size_of((const double(*)[DIG_FEATURES])s, &r[i]) /
-                   dig_scatter_factor(scatter, t, r[i].strength);
-            freedom += freedom_of(&r[i]);
-        }
-    }
-    return freedom > 0.0 ? sum / freedom : 1.0;
-}
-
-// Variance of digs over an S they took no part in, averaged over folds.
-static double held_out(const struct dig_scatter *const scatter, const size_t t, const size_t n,
-                       const struct dig_scatter_residual r[])
+// Variance of the digs of folds [from, to), each over an S that its fold took no part in; of fold
+// FOLDS: of all digs over the S of all.
+static double variance_over(const struct dig_scatter *const scatter, const size_t t, const size_t n,
+                            const struct told told[], const size_t from, const size_t to)
 {
     double sum     = 0.0;
     double freedom = 0.0;
-    for (size_t fold = 0; fold < FOLDS; fold++) {
+    for (size_t fold = from; fold < to; fold++) {
         double s[DIG_FEATURES][DIG_FEATURES];
-        if (pool(scatter, t, n, r, fold, s) < 1.0) {
-            continue;
-        }
-        add_floor(s);
-        if (dig_cholesky(DIG_FEATURES, &s[0][0]) != DIG_OK) {
+        if (pool(scatter, t, n, told, fold, s) < 1.0 || decompose(s) != DIG_OK) {
             continue;
         }
         for (size_t i = 0; i < n; i++) {
-            if (r[i].trajectory == t && r[i].packings > 1 && fold_of(&r[i], i) == fold) {
-                sum += freedom_of(&r[i]) * size_of((const double(*)[DIG_FEATURES])s, &r[i]) /
-                       dig_scatter_factor(scatter, t, r[i].strength);
-                freedom += freedom_of(&r[i]);
+            if (told[i].fold == fold || fold == FOLDS) {
+                sum += told[i].freedom * size_of((const double(*)[DIG_FEATURES])s, &told[i]) /
+                       dig_scatter_factor(scatter, t, told[i].of->strength);
+                freedom += told[i].freedom;
             }
         }
     }
@@ -216,45 +204,43 @@ static double held_out(const struct dig_scatter *const scatter, const size_t t, 
 
 // A residual is smaller against an S it took part in than a campaign's dig is: larger makes it one.
 static enum dig_status keep_residuals(struct dig_scatter *const scatter, const size_t t,
-                                      const size_t n, const struct dig_scatter_residual r[],
-                                      const double larger)
+                                      const size_t n, const struct told told[], const double larger)
 {
     scatter->residual[t] = malloc((n + 1) * sizeof *scatter->residual[t]);
     if (scatter->residual[t] == NULL) {
         return DIG_ENOMEM;
     }
+    scatter->residuals[t] = n;
     for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory != t || r[i].packings < 2) {
-            continue;
-        }
+        const struct dig_scatter_residual *const r = told[i].of;
+
         const double scale =
-            sqrt(larger / (freedom_of(&r[i]) * dig_scatter_factor(scatter, t, r[i].strength)));
+            sqrt(larger / (told[i].freedom * dig_scatter_factor(scatter, t, r->strength)));
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            scatter->residual[t][scatter->residuals[t]][f] = scale * r[i].value[f];
+            scatter->residual[t][i][f] = scale * r->value[f];
         }
-        scatter->residuals[t]++;
     }
     return DIG_OK;
 }
 
 static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const size_t t,
-                                       const size_t n, const struct dig_scatter_residual r[])
+                                       const size_t n, const struct told told[])
 {
-    enum dig_status status = fit_factor(scatter, t, n, r);
+    enum dig_status status = fit_factor(scatter, t, n, told);
     if (status != DIG_OK) {
         return status;
     }
-    (void)pool(scatter, t, n, r, FOLDS, scatter->covariance[t]);
-    const double held_out_size = held_out(scatter, t, n, r);
-    const double larger = fmax(held_out_size / fmax(taken_part(scatter, t, n, r), 1e-3), 1.0);
-    scatter->widened[t] = fmax(held_out_size, 1.0);
+    (void)pool(scatter, t, n, told, FOLDS, scatter->covariance[t]);
+    const double held_out   = variance_over(scatter, t, n, told, 0, FOLDS);
+    const double taken_part = variance_over(scatter, t, n, told, FOLDS, FOLDS + 1);
+    scatter->widened[t]     = fmax(held_out, 1.0);
     for (size_t i = 0; i < DIG_FEATURES; i++) {
         for (size_t j = 0; j < DIG_FEATURES; j++) {
             scatter->covariance[t][i][j] *= scatter->widened[t];
         }
     }
     add_floor(scatter->covariance[t]);
-    return keep_residuals(scatter, t, n, r, larger);
+    return keep_residuals(scatter, t, n, told, fmax(held_out / fmax(taken_part, 1e-3), 1.0));
 }
 
 // Variances of the table's curves, the mean of all entries.
@@ -270,17 +256,11 @@ static void variances_of(const struct dig_response_surface *const surface, const
             continue;
         }
         double place[DIG_AXES];
-        double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         double feature[DIG_FEATURES];
         double amplitude[DIG_FORCE_CHANNELS];
         dig_response_surface_place(surface, &set->gravel[e], place);
         dig_response_surface_features(surface, t, place, feature, amplitude);
-        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                sd[c][k] = (double)curve->sd[c][k];
-            }
-        }
-        dig_features_of((const double(*)[DIG_CURVE_POINTS])sd, feature);
+        dig_features_of_table(curve->sd, feature);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             variance[f] += pow(feature[f] / amplitude[f / DIG_FEATURE_BINS], 2.0);
         }
@@ -304,9 +284,9 @@ static void correlate(const double variance[DIG_FEATURES], const double correlat
     add_floor(s);
 }
 
-// Of the residuals of one trajectory, -2 log: as many independent digs as degrees of freedom.
-static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t t, const size_t n,
-                        const struct dig_scatter_residual r[])
+// Of a trajectory's residuals, -2 log: as many independent digs as degrees of freedom.
+static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t n,
+                        const struct told told[])
 {
     double lower[DIG_FEATURES][DIG_FEATURES];
     double sum = 0.0;
@@ -316,10 +296,8 @@ static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t
     }
     const double log_det = dig_lower_log_det(DIG_FEATURES, &lower[0][0]);
     for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory == t && r[i].packings > 1) {
-            sum += freedom_of(&r[i]) *
-                   (log_det + DIG_FEATURES * size_of((const double(*)[DIG_FEATURES])lower, &r[i]));
-        }
+        sum += told[i].freedom *
+               (log_det + DIG_FEATURES * size_of((const double(*)[DIG_FEATURES])lower, &told[i]));
     }
     return sum;
 }
@@ -327,7 +305,7 @@ static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t
 // S from the standard deviations of the table's curves, with the correlation that suits the few
 // packings best.
 static void assume(const struct dig_response_surface *const surface, const size_t t, const size_t n,
-                   const struct dig_scatter_residual r[], struct dig_scatter *const scatter)
+                   const struct told told[], struct dig_scatter *const scatter)
 {
     double variance[DIG_FEATURES];
     double best = INFINITY;
@@ -335,7 +313,7 @@ static void assume(const struct dig_response_surface *const surface, const size_
     for (size_t i = 0; i < sizeof correlations / sizeof correlations[0]; i++) {
         double s[DIG_FEATURES][DIG_FEATURES];
         correlate(variance, correlations[i], s);
-        const double misfit = misfit_of((const double(*)[DIG_FEATURES])s, t, n, r);
+        const double misfit = misfit_of((const double(*)[DIG_FEATURES])s, n, told);
         if (i == 0 || misfit < best) {
             best = misfit;
             memcpy(scatter->covariance[t], s, sizeof s);
@@ -345,41 +323,32 @@ static void assume(const struct dig_response_surface *const surface, const size_
     scatter->widened[t] = 1.0;
 }
 
-static double freedom_along(const size_t t, const size_t n, const struct dig_scatter_residual r[])
-{
-    double freedom = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        freedom += r[i].trajectory == t && r[i].packings > 1 ? freedom_of(&r[i]) : 0.0;
-    }
-    return freedom;
-}
-
 enum dig_status dig_scatter_pool(const struct dig_response_surface *const surface,
                                  const size_t                             residuals,
                                  const struct dig_scatter_residual        residual[],
                                  struct dig_scatter **const               scatter)
 {
     assert(surface != NULL && scatter != NULL);
-    struct dig_scatter *const made = calloc(1, sizeof *made);
-    if (made == NULL) {
-        return DIG_ENOMEM;
-    }
-    for (size_t t = 0; t < surface->set->trajectories; t++) {
+    struct dig_scatter *const made   = calloc(1, sizeof *made);
+    struct told *const        told   = malloc((residuals + 1) * sizeof *told);
+    enum dig_status           status = made != NULL && told != NULL ? DIG_OK : DIG_ENOMEM;
+    for (size_t t = 0; status != DIG_ENOMEM && t < surface->set->trajectories; t++) {
         if (!surface->known[t]) {
             continue;
         }
-        enum dig_status status = DIG_EINVAL;
-        made->freedom[t]       = freedom_along(t, residuals, residual);
-        if (made->freedom[t] >= LEAST_FREEDOM) {
-            status = pool_trajectory(made, t, residuals, residual);
+        const size_t n = take(t, residuals, residual, told);
+        for (size_t i = 0; i < n; i++) {
+            made->freedom[t] += told[i].freedom;
         }
-        if (status == DIG_ENOMEM) {
-            dig_scatter_destroy(made);
-            return status;
+        status = made->freedom[t] >= LEAST_FREEDOM ? pool_trajectory(made, t, n, told) : DIG_EINVAL;
+        if (status == DIG_EINVAL) {
+            assume(surface, t, n, told, made);
         }
-        if (status != DIG_OK) {
-            assume(surface, t, residuals, residual, made);
-        }
+    }
+    free(told);
+    if (status == DIG_ENOMEM) {
+        dig_scatter_destroy(made);
+        return status;
     }
     *scatter = made;
     return DIG_OK;
