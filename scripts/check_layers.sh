@@ -33,8 +33,8 @@ files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json 
                        recording_csv scene_yaml
 estimator              estimator estimator_tick
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
-estimator/track        inertia_error observation phase route settings track window | abort_detection ending
-                       estimate followed motion recorded_dig
+estimator/track        inertia_error observation phase recorded_dig route settings track window | abort_detection
+                       ending estimate followed motion
 estimator/approach     approach_error approach_fit approach_slots approaches interpolate live_recording
                        observe_dig | approach_response approach_route approached
 estimator/effects      effect template

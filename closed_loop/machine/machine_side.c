@@ -34,9 +34,9 @@ enum dig_status dig_machine_side_create(const struct dig_machine *const   machin
                                                        measured[d].trajectory, &made->dig[d], &why);
         if (status == DIG_OK) {
             made->digs = d + 1;
-            status =
-                dig_machine_dig_measure(&made->machine, set, &made->dig[d],
-                                        &(struct dig_correction){ .delay_s = 0.0 }, &measured[d]);
+            status     = dig_machine_dig_measure(&made->machine, set, &made->dig[d],
+                                                 &(struct dig_correction){ .delay_s = 0.0 },
+                                                 DIG_MEASURE_WITH_SIGMA, &measured[d]);
             (void)dig_error_set(&why, status,
                                 "its moment is not told: a pressure at relief or a "
                                 "drive at its stop for more than a tenth of the dig");
@@ -117,8 +117,9 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
         status = correction_of(side, effects, effect, d, &correction);
         if (status == DIG_OK) {
             *corrected = measured[d];
-            status = dig_machine_dig_values(&side->machine, side->set, &side->dig[d], &correction,
-                                            apply == DIG_APPLY_ROUGHLY, corrected);
+            status     = dig_machine_dig_measure(
+                    &side->machine, side->set, &side->dig[d], &correction,
+                apply == DIG_APPLY_ROUGHLY ? DIG_MEASURE_ROUGHLY : DIG_MEASURE_VALUES, corrected);
         }
         for (int c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
             const bool both = measured[d].measured[c] && corrected->measured[c];

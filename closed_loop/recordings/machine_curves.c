@@ -2,7 +2,6 @@
 // that are centred because the whole dig is at hand.
 
 #include "closed_loop/recordings/machine_dig.h"
-#include "core/units.h"
 #include "estimator/estimator.h"
 #include "estimator/track/window.h"
 #include "estimator/wrench/wrench.h"
@@ -22,25 +21,6 @@ struct reading {
     struct dig_path_point pose;
     bool                  solved;
 };
-
-static double value_of(const struct reading *const reading, const enum dig_channel channel,
-                       double *const sigma, double *const slow, bool *const valid)
-{
-    const struct dig_wrench *const w = &reading->wrench;
-    *valid = reading->solved && (channel == DIG_CHANNEL_MY_Nm ? w->moment_valid : w->force_valid);
-    switch (channel) {
-    case DIG_CHANNEL_FX_N: *sigma = w->sigma_Fx_N; break;
-    case DIG_CHANNEL_FZ_N: *sigma = w->sigma_Fz_N; break;
-    case DIG_CHANNEL_MY_Nm:
-    case DIG_CHANNEL_CARRIED_kg:
-    case DIG_CHANNELS:
-    default: *sigma = w->sigma_My_Nm; break;
-    }
-    // What does not average down is a share of the whole, told for the moment only.
-    *slow = w->sigma_My_Nm > 0.0 ? *sigma * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
-    return channel == DIG_CHANNEL_MY_Nm ? w->My_Nm
-                                        : (channel == DIG_CHANNEL_FX_N ? w->Fx_N : w->Fz_N);
-}
 
 // The sample with the angles and rates of delay_s before, straight between the samples there.
 static void put_back(const struct dig_machine_dig *const dig, const size_t at, const double delay_s,
@@ -73,8 +53,8 @@ static void put_back(const struct dig_machine_dig *const dig, const size_t at, c
 static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
                       const struct dig_correction *const correction, const bool with_sigma,
-                      const double tooth_m, const size_t from, const size_t to, const size_t every,
-                      struct reading reading[])
+                      const struct dig_curve_set *const set, const size_t from, const size_t to,
+                      const size_t every, struct reading reading[])
 {
     struct dig_machine corrected = dig_correction_machine(machine, correction);
     corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
@@ -89,12 +69,7 @@ static void solve_all(const struct dig_machine *const     machine,
         r.solved = dig_wrench_correct(&corrected, correction, &sample, &rates, with_sigma,
                                       &r.wrench, &front) == DIG_OK;
         if (r.solved) {
-            const double phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
-            r.pose               = (struct dig_path_point){
-                              .x_m    = -front.pin_m[DIG_JOINT_BUCKET].x / dig->lambda,
-                              .z_m    = front.pin_m[DIG_JOINT_BUCKET].y / dig->lambda,
-                              .turn_m = tooth_m * remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI),
-            };
+            r.pose = dig_machine_dig_point(set, dig, &front);
         }
         reading[i - from] = r;
     }
@@ -112,18 +87,25 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
     dig_window_close(window);
     dig_window_open(window);
     for (size_t i = from; i < to; i += every) {
-        double       sigma;
-        double       slow;
-        bool         valid;
-        const double value  = value_of(&reading[i - from], channel, &sigma, &slow, &valid);
-        const bool   inside = i >= dig->contact && i < dig->end;
+        const struct reading *const    r = &reading[i - from];
+        const struct dig_wrench *const w = &r->wrench;
+
+        const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, w->Fx_N, w->Fz_N };
+        const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm, w->sigma_Fx_N, w->sigma_Fz_N };
+        const double sigma                      = sigmas[channel];
+        // What does not average down is a share of the whole, told for the moment only.
+        const double slow =
+            w->sigma_My_Nm > 0.0 ? sigma * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
+        const bool valid =
+            r->solved && (channel == DIG_CHANNEL_MY_Nm ? w->moment_valid : w->force_valid);
+        const bool inside = i >= dig->contact && i < dig->end;
         of += inside ? 1 : 0;
         told += inside && valid ? 1 : 0;
         if (valid) {
             dig_window_add(window, &(struct dig_window_sample){
                                        .time_s    = dig->time_s[i] / sqrt(dig->lambda),
-                                       .moment_Nm = value / scale,
-                                       .pose      = reading[i - from].pose,
+                                       .moment_Nm = value[channel] / scale,
+                                       .pose      = r->pose,
                                        .sigma_Nm  = (float)(sigma / scale),
                                        .slow_Nm   = (float)(slow / scale),
                                    });
@@ -156,16 +138,6 @@ static double pace_of(const struct dig_curve_set *const   set,
     return to_s > from_s ? table_s / (to_s - from_s) : 1.0;
 }
 
-static size_t beside(const struct dig_machine_dig *const dig, const size_t at, const double by_s)
-{
-    const double time_s = dig->time_s[at < dig->samples ? at : dig->samples - 1] + by_s;
-    size_t       i      = 0;
-    while (i < dig->samples && dig->time_s[i] < time_s) {
-        i++;
-    }
-    return i;
-}
-
 // How the machine stood while it dug.
 static void tell_pitch(const struct dig_machine_dig *const dig, struct dig_measured *const measured)
 {
@@ -181,24 +153,30 @@ static void tell_pitch(const struct dig_machine_dig *const dig, struct dig_measu
     measured->pitch_rad   = count > 0.0 ? sum / count : 0.0;
 }
 
-static enum dig_status measure(const struct dig_machine *const     machine,
-                               const struct dig_curve_set *const   set,
-                               const struct dig_machine_dig *const dig,
-                               const struct dig_correction *const correction, const bool with_sigma,
-                               const bool roughly, struct dig_measured *const measured)
+enum dig_status dig_machine_dig_measure(const struct dig_machine *const     machine,
+                                        const struct dig_curve_set *const   set,
+                                        const struct dig_machine_dig *const dig,
+                                        const struct dig_correction *const  correction,
+                                        const enum dig_measure              how,
+                                        struct dig_measured *const          measured)
 {
-    const size_t             from    = beside(dig, dig->contact, -beside_s);
-    const size_t             to      = beside(dig, dig->end, beside_s);
+    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
+    const size_t last   = dig->samples - 1;
+    const double from_s = dig->time_s[dig->contact < last ? dig->contact : last] - beside_s;
+    const double to_s   = dig->time_s[dig->end < last ? dig->end : last] + beside_s;
+    const size_t from   = dig_machine_dig_sample_at(dig, from_s);
+    const size_t to     = dig_machine_dig_sample_at(dig, to_s);
     struct dig_window *const window  = calloc(1, sizeof *window);
     const size_t             rows    = to > from ? to - from : 0;
-    const size_t             every   = roughly ? rows / DIG_CURVE_POINTS + 1 : 1;
+    const size_t             every   = how == DIG_MEASURE_ROUGHLY ? rows / DIG_CURVE_POINTS + 1 : 1;
     struct reading *const    reading = malloc((rows + 1) * sizeof *reading);
     if (window == NULL || reading == NULL) {
         free(window);
         free(reading);
         return DIG_ENOMEM;
     }
-    solve_all(machine, dig, correction, with_sigma, set->tooth_m, from, to, every, reading);
+    solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from, to, every,
+              reading);
 
     enum dig_status status = DIG_OK;
     for (int c = DIG_FORCE_CHANNELS - 1; c >= 0 && status == DIG_OK; c--) {
@@ -221,24 +199,4 @@ static enum dig_status measure(const struct dig_machine *const     machine,
     free(window);
     free(reading);
     return status;
-}
-
-enum dig_status dig_machine_dig_measure(const struct dig_machine *const     machine,
-                                        const struct dig_curve_set *const   set,
-                                        const struct dig_machine_dig *const dig,
-                                        const struct dig_correction *const  correction,
-                                        struct dig_measured *const          measured)
-{
-    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
-    return measure(machine, set, dig, correction, true, false, measured);
-}
-
-enum dig_status dig_machine_dig_values(const struct dig_machine *const     machine,
-                                       const struct dig_curve_set *const   set,
-                                       const struct dig_machine_dig *const dig,
-                                       const struct dig_correction *const  correction,
-                                       const bool roughly, struct dig_measured *const measured)
-{
-    assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
-    return measure(machine, set, dig, correction, false, roughly, measured);
 }

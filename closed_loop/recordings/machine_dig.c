@@ -1,8 +1,7 @@
 #include "closed_loop/recordings/machine_dig.h"
 
-#include "core/units.h"
+#include "estimator/track/recorded_dig.h"
 #include "estimator/wrench/cylinder.h"
-#include "estimator/wrench/statics.h"
 
 #include <assert.h>
 #include <math.h>
@@ -30,34 +29,38 @@ static const double told_share = 0.5;
 static const double dump_rad   = 0.12;
 static const double closed_rad = 0.02;
 
+struct dig_path_point dig_machine_dig_point(const struct dig_curve_set *const   set,
+                                            const struct dig_machine_dig *const dig,
+                                            const struct dig_front *const       front)
+{
+    const struct dig_vec2 *const pin = &front->pin_m[DIG_JOINT_BUCKET];
+    return dig_recorded_dig_point(set, dig->lambda, pin->x, pin->y,
+                                  front->attitude_rad[DIG_JOINT_BUCKET]);
+}
+
 struct vertices {
     size_t                 count;
     struct dig_path_point *point;
     size_t                *sample; // each vertex's
 };
 
-static struct dig_path_point point_of(const struct dig_machine *const machine,
-                                      const struct dig_sample *const sample, const double lambda,
-                                      const double tooth_m)
+static struct dig_path_point point_of(const struct dig_machine *const     machine,
+                                      const struct dig_curve_set *const   set,
+                                      const struct dig_machine_dig *const dig, const size_t sample)
 {
-    const struct dig_front front   = dig_front_place(machine, &sample->value[DIG_SIGNAL_BOOM_rad]);
-    const double           phi_rad = front.attitude_rad[DIG_JOINT_BUCKET];
-    return (struct dig_path_point){
-        .x_m    = -front.pin_m[DIG_JOINT_BUCKET].x / lambda,
-        .z_m    = front.pin_m[DIG_JOINT_BUCKET].y / lambda,
-        .turn_m = tooth_m * remainder(-0.5 * DIG_PI - phi_rad, 2.0 * DIG_PI),
-    };
+    const struct dig_front front =
+        dig_front_place(machine, &dig->sample[sample].value[DIG_SIGNAL_BOOM_rad]);
+    return dig_machine_dig_point(set, dig, &front);
 }
 
 // The path of the whole recording.
-static void lay_out(const struct dig_machine *const     machine,
-                    const struct dig_machine_dig *const dig, const double tooth_m,
-                    struct vertices *const v)
+static void lay_out(const struct dig_machine *const machine, const struct dig_curve_set *const set,
+                    const struct dig_machine_dig *const dig, struct vertices *const v)
 {
-    const double spacing_m = spacing_share * tooth_m;
+    const double spacing_m = spacing_share * set->tooth_m;
     v->count               = 0;
     for (size_t i = 0; i < dig->samples; i++) {
-        const struct dig_path_point at = point_of(machine, &dig->sample[i], dig->lambda, tooth_m);
+        const struct dig_path_point at = point_of(machine, set, dig, i);
         if (v->count > 0) {
             const struct dig_path_point step = dig_path_point_sub(at, v->point[v->count - 1]);
             if (dig_path_point_dot(step, step) < spacing_m * spacing_m) {
@@ -144,7 +147,7 @@ static struct dig_track fit_track(const struct dig_route *const route,
     return dig_track_fit(route, &path, limit_share * tooth_m);
 }
 
-static size_t sample_at(const struct dig_machine_dig *const dig, const double time_s)
+size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const double time_s)
 {
     size_t i = 0;
     while (i < dig->samples && dig->time_s[i] < time_s) {
@@ -175,16 +178,16 @@ static size_t find_dumped(const struct dig_machine_dig *const dig)
         if (most_rad < least_rad + dump_rad) {
             most_rad = phi_rad; // still closed: the most is counted from where it is least
         } else if (phi_rad < most_rad - closed_rad) {
-            return sample_at(dig, dig->time_s[most] + dumped_s);
+            return dig_machine_dig_sample_at(dig, dig->time_s[most] + dumped_s);
         }
     }
     return dig->samples;
 }
 
 // Where along the recording the trajectory begins and ends.
-static void split(const struct dig_machine *const machine, const struct dig_route *const route,
-                  const struct vertices *const v, const struct found *const found,
-                  const double tooth_m, struct dig_machine_dig *const dig)
+static void split(const struct dig_machine *const machine, const struct dig_curve_set *const set,
+                  const struct dig_route *const route, const struct vertices *const v,
+                  const struct found *const found, struct dig_machine_dig *const dig)
 {
     // The last sample still at the start, and the first at the end.
     const size_t from = v->sample[found->start > 12 ? found->start - 12 : 0];
@@ -193,10 +196,10 @@ static void split(const struct dig_machine *const machine, const struct dig_rout
     dig->contact      = from;
     dig->end          = to;
     for (size_t i = from; i < dig->samples; i++) {
-        const struct dig_path_point at = point_of(machine, &dig->sample[i], dig->lambda, tooth_m);
+        const struct dig_path_point at    = point_of(machine, set, dig, i);
         const struct dig_projection place = dig_route_project(
             route, dig->track.dx_m, dig->track.dz_m, &at, last - 0.05, fmin(last + 0.1, 1.0));
-        if (place.distance_m > 2.0 * limit_share * tooth_m) {
+        if (place.distance_m > 2.0 * limit_share * set->tooth_m) {
             continue;
         }
         last = fmax(last, place.progress);
@@ -209,7 +212,7 @@ static void split(const struct dig_machine *const machine, const struct dig_rout
         }
     }
     const double contact_s = dig->time_s[dig->contact < dig->samples ? dig->contact : 0];
-    dig->before_end        = sample_at(dig, contact_s - clear_s);
+    dig->before_end        = dig_machine_dig_sample_at(dig, contact_s - clear_s);
     dig->after             = find_dumped(dig);
 }
 
@@ -218,7 +221,7 @@ static enum dig_status place(const struct dig_machine *const   machine,
                              struct vertices *const v, struct dig_machine_dig *const dig,
                              struct dig_error *const error)
 {
-    lay_out(machine, dig, set->tooth_m, v);
+    lay_out(machine, set, dig, v);
     const struct found found   = search(set, v, asked);
     const double       limit_m = limit_share * set->tooth_m;
     if (found.trajectory < 0) {
@@ -237,7 +240,7 @@ static enum dig_status place(const struct dig_machine *const   machine,
             asked < 0 ? "any trajectory of the table" : set->trajectory[asked].name,
             fmax(dig->track.rms_m, found.off_m / 3.0) / set->tooth_m, limit_share);
     }
-    split(machine, &route, v, &found, set->tooth_m, dig);
+    split(machine, set, &route, v, &found, dig);
     return DIG_OK;
 }
 

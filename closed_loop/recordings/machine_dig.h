@@ -17,6 +17,7 @@
 #include "estimator/track/track.h"
 #include "estimator/wrench/correction.h"
 #include "estimator/wrench/rates.h"
+#include "estimator/wrench/statics.h"
 
 /// The samples of one recording that have all angles and the pressures of every drive that it tells
 /// (the bucket at least), and what they say. Owned; free with dig_machine_dig_finish().
@@ -51,21 +52,25 @@ dig_machine_dig_make_air(const struct dig_machine           *machine,
 /// NULL and a zeroed struct are allowed.
 void dig_machine_dig_finish(struct dig_machine_dig *dig);
 
+/// The first sample at this time or after; samples: there is none.
+size_t dig_machine_dig_sample_at(const struct dig_machine_dig *dig, double time_s);
+
+/// The bucket of the machine standing so, in rig scale.
+struct dig_path_point dig_machine_dig_point(const struct dig_curve_set   *set,
+                                            const struct dig_machine_dig *dig,
+                                            const struct dig_front       *front);
+
+/// How curves are measured: with their sigma; without, which is 0, at half the work; or roughly,
+/// from as many samples as a curve has points, for what is a difference of two such, as many times
+/// less.
+enum dig_measure { DIG_MEASURE_WITH_SIGMA, DIG_MEASURE_VALUES, DIG_MEASURE_ROUGHLY };
+
 /// The curves that the machine, corrected (zeroed: as its file says), gives of the dig: trajectory,
 /// pace, first, last, measured, value and sigma of *measured are written. A channel that fewer than
 /// nine samples in ten tell counts as not measured. DIG_ENOMATCH: the moment is not among them.
-DIG_MUST_CHECK enum dig_status dig_machine_dig_measure(const struct dig_machine     *machine,
-                                                       const struct dig_curve_set   *set,
-                                                       const struct dig_machine_dig *dig,
-                                                       const struct dig_correction  *correction,
-                                                       struct dig_measured          *measured);
-
-/// The same without sigma, which is 0: half the work. roughly: from as many samples as a curve has
-/// points, for what is a difference of two such; as many times less.
-DIG_MUST_CHECK enum dig_status dig_machine_dig_values(const struct dig_machine     *machine,
-                                                      const struct dig_curve_set   *set,
-                                                      const struct dig_machine_dig *dig,
-                                                      const struct dig_correction  *correction,
-                                                      bool roughly, struct dig_measured *measured);
+DIG_MUST_CHECK enum dig_status
+dig_machine_dig_measure(const struct dig_machine *machine, const struct dig_curve_set *set,
+                        const struct dig_machine_dig *dig, const struct dig_correction *correction,
+                        enum dig_measure how, struct dig_measured *measured);
 
 #endif // DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
