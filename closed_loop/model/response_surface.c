@@ -81,6 +81,14 @@ struct dig_gravel dig_response_surface_gravel(const struct dig_response_surface 
     return gravel;
 }
 
+static void terms_of_entry(const struct dig_response_surface *const surface, const size_t entry,
+                           double term[DIG_RESPONSE_SURFACE_TERMS])
+{
+    double place[DIG_AXES];
+    dig_response_surface_place(surface, &surface->set->gravel[entry], place);
+    terms_at(surface, place, term);
+}
+
 // Packings of an entry that no other entry holds too.
 static double weight_of(const struct dig_curve_set *const set, const size_t entry, const size_t t)
 {
@@ -101,10 +109,8 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
             continue;
         }
         entries++;
-        double place[DIG_AXES];
         double term[DIG_RESPONSE_SURFACE_TERMS];
-        dig_response_surface_place(surface, &set->gravel[e], place);
-        terms_at(surface, place, term);
+        terms_of_entry(surface, e, term);
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j < n; j++) {
                 normal[i * n + j] += weight * term[i] * term[j];
@@ -133,12 +139,9 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
 static void share_of(const struct dig_response_surface *const surface, const size_t t,
                      const size_t entry, double share[DIG_RESPONSE_SURFACE_TERMS])
 {
-    const struct dig_curve_set *const set    = surface->set;
-    const double                      weight = weight_of(set, entry, t);
-    double                            place[DIG_AXES];
-    double                            term[DIG_RESPONSE_SURFACE_TERMS];
-    dig_response_surface_place(surface, &set->gravel[entry], place);
-    terms_at(surface, place, term);
+    const double weight = weight_of(surface->set, entry, t);
+    double       term[DIG_RESPONSE_SURFACE_TERMS];
+    terms_of_entry(surface, entry, term);
     for (size_t j = 0; j < surface->terms; j++) {
         share[j] = 0.0;
         for (size_t i = 0; i < surface->terms; i++) {
@@ -190,12 +193,10 @@ static void fit_shapes(struct dig_response_surface *const surface, const size_t 
         if (set->packings[slot] <= 0) {
             continue;
         }
-        double place[DIG_AXES];
         double term[DIG_RESPONSE_SURFACE_TERMS];
         double amplitude[DIG_FORCE_CHANNELS];
         double share[DIG_RESPONSE_SURFACE_TERMS];
-        dig_response_surface_place(surface, &set->gravel[e], place);
-        terms_at(surface, place, term);
+        terms_of_entry(surface, e, term);
         amplitude_at(surface, t, term, amplitude);
         share_of(surface, t, e, share);
         for (size_t j = 0; j < surface->terms; j++) {

@@ -97,10 +97,12 @@ static double factor_of(const struct dig_soil *const soil, const enum dig_effect
     return known->factor != NULL ? known->factor(value, share, speed) : 0.0;
 }
 
-// The terms of a template at a place, u scaled to the gravel's density.
-static void terms_of(const struct dig_soil *const soil, const enum dig_effect_id effect,
-                     const size_t t, const double place[DIG_AXES], const double u,
-                     const double amplitude[DIG_FORCE_CHANNELS], double term[DIG_SOIL_TERMS])
+// The template of an effect and its terms at a place, u scaled to the gravel's density.
+static const struct dig_soil_template *terms_of(const struct dig_soil *const soil,
+                                                const enum dig_effect_id effect, const size_t t,
+                                                const double place[DIG_AXES], const double u,
+                                                const double amplitude[DIG_FORCE_CHANNELS],
+                                                double       term[DIG_SOIL_TERMS])
 {
     const struct dig_soil_template *const template = dig_soil_template_at(soil, effect, t, u);
     double scaled                                  = u;
@@ -109,6 +111,7 @@ static void terms_of(const struct dig_soil *const soil, const enum dig_effect_id
         scaled *= template->base_density_kgpm3 / gravel.value[DIG_AXIS_DENSITY_kgpm3];
     }
     dig_soil_terms(template, scaled, dig_soil_strength(soil->surface, place, amplitude), term);
+    return template;
 }
 
 void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id effect,
@@ -126,29 +129,22 @@ void dig_soil_add(const struct dig_soil *const soil, const enum dig_effect_id ef
         }
         return;
     }
-    const struct dig_soil_template *const template =
-        dig_soil_template_at(soil, effect, trajectory, u * share);
     double term[DIG_SOIL_TERMS];
-    terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
-    for (size_t i = 0; i < template->terms; i++) {
-        term[i] *= contrast;
-    }
+    const struct dig_soil_template *const template =
+        terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
     // Most hats are nothing at any one magnitude.
     size_t some[DIG_SOIL_TERMS];
     size_t n = 0;
     for (size_t i = 0; i < template->terms; i++) {
+        term[i] *= contrast;
         if (fabs(term[i]) > 0.0) {
             some[n++] = i;
         }
     }
-    double sum = noise != NULL ? *noise : 0.0;
     for (size_t i = 0; noise != NULL && i < n; i++) {
         for (size_t j = 0; j < n; j++) {
-            sum += term[some[i]] * template->inverse[some[i]][some[j]] * term[some[j]];
+            *noise += term[some[i]] * template->inverse[some[i]][some[j]] * term[some[j]];
         }
-    }
-    if (noise != NULL) {
-        *noise = sum;
     }
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         double shape[DIG_FEATURE_BINS] = { 0.0 };
@@ -170,22 +166,25 @@ void dig_soil_add_curve(const struct dig_soil *const soil, const enum dig_effect
                         const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
                         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
-    double term[DIG_SOIL_TERMS] = { 0.0 };
+    if (!has_templates(effect)) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double factor = factor_of(soil, effect, u, share, soil->speed[trajectory][k]);
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                curve[c][k] += factor * plain[c][k];
+            }
+        }
+        return;
+    }
+    double term[DIG_SOIL_TERMS];
     double feature[DIG_FEATURES];
     double amplitude[DIG_FORCE_CHANNELS];
     dig_response_surface_features(soil->surface, trajectory, place, feature, amplitude);
     const struct dig_soil_template *const template =
-        dig_soil_template_at(soil, effect, trajectory, u * share);
-    if (has_templates(effect)) {
         terms_of(soil, effect, trajectory, place, u * share, amplitude, term);
-    }
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            double sum =
-                !has_templates(effect)
-                    ? factor_of(soil, effect, u, share, soil->speed[trajectory][k]) * plain[c][k]
-                    : 0.0;
-            for (size_t i = 0; has_templates(effect) && i < template->terms; i++) {
+            double sum = 0.0;
+            for (size_t i = 0; i < template->terms; i++) {
                 sum += contrast * term[i] * template->curve[i][c][k] * amplitude[c];
             }
             curve[c][k] += sum;

@@ -203,18 +203,13 @@ static struct columns along_trajectory(const struct columns *const all)
     return along;
 }
 
-// The time of this progress, the recording's.
-static double time_at_s(const struct columns *const c, const double progress)
+// What value is where along is at, straight between rows.
+static double read_off(const struct columns *const c, const double along[], const double value[],
+                       const double at)
 {
-    const struct dig_alignment_place at = dig_alignment_place(c->rows, c->progress, progress, 0);
-    return c->t_s[at.row] + at.fraction * (c->t_s[at.row + 1] - c->t_s[at.row]);
-}
-
-// The progress at this time.
-static double progress_at(const struct columns *const c, const double t_s)
-{
-    const struct dig_alignment_place at = dig_alignment_place(c->rows, c->t_s, t_s, 0);
-    return c->progress[at.row] + at.fraction * (c->progress[at.row + 1] - c->progress[at.row]);
+    const struct dig_alignment_place place  = dig_alignment_place(c->rows, along, at, 0);
+    const double                     before = value[place.row];
+    return before + place.fraction * (value[place.row + 1] - before);
 }
 
 // How fast the dig was: without its first and last hundredth, about which it may have rested.
@@ -227,7 +222,7 @@ static double pace_of(const struct dig_curve_set *const set, const size_t trajec
     const double                       to   = fmin(part->to, 1.0) - rim;
     return (dig_trajectory_time_s(t, set->tooth_m, to) -
             dig_trajectory_time_s(t, set->tooth_m, from)) /
-           (time_at_s(c, to) - time_at_s(c, from));
+           (read_off(c, c->progress, c->t_s, to) - read_off(c, c->progress, c->t_s, from));
 }
 
 static struct ends ends_of(const struct dig_curve_set *const set, const size_t trajectory,
@@ -241,10 +236,10 @@ static struct ends ends_of(const struct dig_curve_set *const set, const size_t t
     ends.after_s =
         (dig_trajectory_duration_s(t) - dig_trajectory_time_s(t, set->tooth_m, part->to)) / pace;
     if (ends.before_s > held_share * half_s) {
-        ends.first = progress_at(c, c->t_s[0] + half_s);
+        ends.first = read_off(c, c->t_s, c->progress, c->t_s[0] + half_s);
     }
     if (ends.after_s > held_share * half_s) {
-        ends.last = progress_at(c, c->t_s[c->rows - 1] - half_s);
+        ends.last = read_off(c, c->t_s, c->progress, c->t_s[c->rows - 1] - half_s);
     }
     return ends;
 }
