@@ -4,7 +4,6 @@
 #include "closed_loop/numeric/levenberg.h"
 #include "estimator/effects/effect.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 

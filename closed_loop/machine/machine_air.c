@@ -232,11 +232,9 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
         .segment = malloc((2 * digs + 1) * sizeof *made.segment),
         .scratch = malloc((size_t)(3 * DIG_JOINTS) * points * sizeof *made.scratch),
         .pose    = calloc(points, sizeof *made.pose),
-        .posed   = calloc(2 * digs + 1, sizeof *made.posed),
-        .filed   = calloc(2 * digs + 1, sizeof *made.filed),
     };
     if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL ||
-        made.pose == NULL || made.posed == NULL || made.filed == NULL) {
+        made.pose == NULL) {
         dig_air_finish(&made);
         return DIG_ENOMEM;
     }
@@ -258,8 +256,6 @@ void dig_air_finish(struct dig_air *const air)
         free(air->segment);
         free(air->scratch);
         free(air->pose);
-        free(air->posed);
-        free(air->filed);
         *air = (struct dig_air){ .points = 0 };
     }
 }

@@ -37,23 +37,6 @@ struct dig_air_row {
     double         sigma_N;       // 1 sigma of the sensors
 };
 
-/// The air before or after one dig.
-struct dig_air_segment {
-    size_t dig; // its place among those given
-    bool   after;
-    size_t first_point, points; // those beside the air tell angles alone
-    size_t first_row, rows;
-    double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
-};
-
-/// What of a point's balance pressures and friction have no part in.
-struct dig_air_pose {
-    bool   known;
-    bool   lever_ok[DIG_JOINTS];
-    double arm_m[DIG_JOINTS];
-    double mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
-};
-
 /// What a machine's file and its angle sensors may have wrong besides the catalogue's effects.
 /// Zeroed: nothing. Doubles only, read as an array.
 struct dig_file_error {
@@ -64,6 +47,27 @@ struct dig_file_error {
 
 #define DIG_FILE_ERRORS (sizeof(struct dig_file_error) / sizeof(double))
 
+/// The air before or after one dig.
+struct dig_air_segment {
+    size_t dig; // its place among those given
+    bool   after;
+    size_t first_point, points; // those beside the air tell angles alone
+    size_t first_row, rows;
+    double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
+
+    // What the poses of its points were last asked about with.
+    struct dig_correction posed;
+    struct dig_file_error filed;
+};
+
+/// What of a point's balance pressures and friction have no part in.
+struct dig_air_pose {
+    bool   known;
+    bool   lever_ok[DIG_JOINTS];
+    double arm_m[DIG_JOINTS];
+    double mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
+};
+
 /// Free with dig_air_finish().
 struct dig_air {
     struct dig_machine      machine;
@@ -73,9 +77,7 @@ struct dig_air {
     struct dig_air_row     *row;
     struct dig_air_segment *segment;
     double                 *scratch; // [9 * points]
-    struct dig_air_pose    *pose;    // [points], with the correction last asked about
-    struct dig_correction  *posed;   // [segments], which that is
-    struct dig_file_error  *filed;   // [segments], and with which of the file's errors
+    struct dig_air_pose    *pose;    // [points]
 };
 
 /// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive

@@ -161,19 +161,19 @@ static double smooth_at(const double (*const loss_N)[DIG_JOINTS], const size_t p
 static void rest_of(const struct dig_air *const air, const size_t s,
                     const struct dig_correction *const correction, const bool calm)
 {
-    double(*const rest_N)[DIG_JOINTS]           = (double(*)[DIG_JOINTS])(void *)air->scratch;
-    const struct dig_air_segment *const segment = &air->segment[s];
-    const struct dig_air_point *const   point   = &air->point[segment->first_point];
-    double(*const loss_N)[DIG_JOINTS]           = rest_N + segment->points;
-    double(*const more_N)[DIG_JOINTS]           = loss_N + segment->points;
-    const struct dig_machine   corrected        = weighed(air, correction);
-    struct dig_air_pose *const pose             = &air->pose[segment->first_point];
+    double(*const rest_N)[DIG_JOINTS]         = (double(*)[DIG_JOINTS])(void *)air->scratch;
+    struct dig_air_segment *const     segment = &air->segment[s];
+    const struct dig_air_point *const point   = &air->point[segment->first_point];
+    double(*const loss_N)[DIG_JOINTS]         = rest_N + segment->points;
+    double(*const more_N)[DIG_JOINTS]         = loss_N + segment->points;
+    const struct dig_machine   corrected      = weighed(air, correction);
+    struct dig_air_pose *const pose           = &air->pose[segment->first_point];
     // Levers, masses and delay follow all of a correction but the pressures'.
     const size_t geometry = offsetof(struct dig_correction, bucket) / sizeof(double);
-    if (!alike(correction, &air->posed[s], geometry, sizeof *correction / sizeof(double)) ||
-        !alike(&air->file, &air->filed[s], 0, DIG_FILE_ERRORS)) {
-        air->posed[s] = *correction;
-        air->filed[s] = air->file;
+    if (!alike(correction, &segment->posed, geometry, sizeof *correction / sizeof(double)) ||
+        !alike(&air->file, &segment->filed, 0, DIG_FILE_ERRORS)) {
+        segment->posed = *correction;
+        segment->filed = air->file;
         for (size_t p = 0; p < segment->points; p++) {
             pose[p].known = false;
         }

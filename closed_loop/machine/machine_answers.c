@@ -4,7 +4,6 @@
 #include "estimator/effects/effect.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 // 5 % and 95 % of a normal distribution, in its sigmas.
@@ -17,23 +16,19 @@ static size_t write_parameters(const struct dig_machine_search *const s,
                                const enum dig_effect_id id, struct dig_model_parameter parameter[])
 {
     const struct dig_effect *const effect = dig_effect_of(id);
-    size_t                         n      = 0;
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->lines.column[c];
-        if (column->effect != id || column->segment >= 0) {
-            continue;
-        }
-        const struct dig_effect_parameter *const of = &effect->parameter[column->parameter];
+    const size_t                   first  = dig_lines_first(&s->lines, id);
+    for (size_t i = 0; i < effect->parameters; i++) {
+        const struct dig_effect_parameter *const of = &effect->parameter[i];
+        struct dig_model_parameter *const        p  = &parameter[i];
 
-        const double                      value = of->absent + of->scale * s->at[c];
-        const double                      wide  = ninety * of->scale * s->sigma[c];
-        struct dig_model_parameter *const p     = &parameter[n++];
+        const double value = of->absent + of->scale * s->at[first + i];
+        const double wide  = ninety * of->scale * s->sigma[first + i];
         memcpy(p->name, of->name, strlen(of->name) + 1);
         p->value = fmin(fmax(value, of->low), of->high);
         p->low   = value - wide;
         p->high  = value + wide;
     }
-    return n;
+    return effect->parameters;
 }
 
 // One answer by the narrow priors or the wide ones: its values, and a square root of the covariance
@@ -42,8 +37,7 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                          const struct dig_model_effect effect[], const bool wide,
                          struct dig_machine_answer *const answer)
 {
-    struct dig_fit_answer narrow = { .at = s->at, .covariance = s->covariance };
-    struct dig_fit_answer solved = narrow;
+    struct dig_fit_answer solved = { .at = s->at, .covariance = s->covariance };
     size_t                column[DIG_MACHINE_NUMBERS];
     double                scale[DIG_MACHINE_NUMBERS];
     double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
@@ -52,12 +46,11 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
     for (size_t e = 0; e < effects; e++) {
         set |= 1U << (unsigned)effect[e].effect;
     }
-    memset(s->covariance, 0, s->lines.columns * s->lines.columns * sizeof(double));
-    dig_fit_solve(&s->fit, set, &narrow);
-    solved = narrow;
+    dig_fit_solve(&s->fit, set, &solved);
     if (wide) {
+        const double narrow = solved.width;
         dig_fit_solve_wide(&s->fit, set, &solved);
-        if (!(solved.width > narrow.width)) {
+        if (!(solved.width > narrow)) {
             return false;
         }
     }
@@ -65,17 +58,16 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                                            .wide         = wide,
                                            .log_evidence = solved.log_evidence };
     for (size_t e = 0; e < effects; e++) {
-        answer->effect[e] = effect[e];
-        for (size_t c = 0; c < s->lines.columns; c++) {
-            const struct dig_lines_column *const of = &s->lines.column[c];
-            if (of->effect == effect[e].effect && of->segment < 0) {
-                const struct dig_effect_parameter *const parameter =
-                    &dig_effect_of(of->effect)->parameter[of->parameter];
-                const double value = parameter->absent + of->scale * s->at[c];
-                scale[n]           = of->scale;
-                answer->value[n]   = fmin(fmax(value, parameter->low), parameter->high);
-                column[n++]        = c;
-            }
+        const struct dig_effect *const of    = dig_effect_of(effect[e].effect);
+        const size_t                   first = dig_lines_first(&s->lines, of->id);
+        answer->effect[e]                    = effect[e];
+        for (size_t i = 0; i < of->parameters; i++) {
+            const struct dig_effect_parameter *const parameter = &of->parameter[i];
+
+            const double value = parameter->absent + parameter->scale * s->at[first + i];
+            answer->value[n]   = fmin(fmax(value, parameter->low), parameter->high);
+            scale[n]           = parameter->scale;
+            column[n++]        = first + i;
         }
     }
     for (size_t i = 0; i < n; i++) {
@@ -135,7 +127,6 @@ void dig_machine_write_candidates(struct dig_machine_search *const s, const doub
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         struct dig_fit_answer       answer = { .at = s->at, .sigma = s->sigma };
         struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
-        memset(s->sigma, 0, s->lines.columns * sizeof(double));
         dig_fit_solve(&s->fit, 1U << e, &answer);
         *out = (struct dig_candidate){
             .effect       = (enum dig_effect_id)e,
@@ -161,7 +152,6 @@ void dig_machine_write_effects(struct dig_machine_search *const s, const double 
                                struct dig_machine_finding *const finding)
 {
     struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
-    memset(s->sigma, 0, s->lines.columns * sizeof(double));
     dig_fit_solve(&s->fit, s->set, &answer);
     memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
     finding->effects = 0;

@@ -204,9 +204,6 @@ static void solve(struct work *const w, const unsigned named, const bool whole,
     }
     *answer = (struct dig_fit_answer){ .at         = whole ? w->at : NULL,
                                        .covariance = whole ? w->covariance : NULL };
-    if (whole) {
-        memset(w->covariance, 0, w->lines.columns * w->lines.columns * sizeof(double));
-    }
     dig_fit_solve_each(&w->fit, w->width, answer);
 }
 

@@ -97,6 +97,12 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
             answer->at[column[i]] = share[i] * x[i];
         }
     }
+    if (answer->sigma != NULL) {
+        memset(answer->sigma, 0, all * sizeof(double));
+    }
+    if (answer->covariance != NULL) {
+        memset(answer->covariance, 0, all * all * sizeof(double));
+    }
     for (size_t i = 0; i < n && (answer->sigma != NULL || answer->covariance != NULL); i++) {
         double one[DIG_LINES_COLUMNS_MAX];
         memset(one, 0, n * sizeof one[0]);

@@ -18,7 +18,6 @@
 #include "closed_loop/machine/machine_lines.h"
 #include "core/status.h"
 
-#include <stdbool.h>
 #include <stddef.h>
 
 /// Normal equations summed over digs, at all parameters absent. Free with dig_fit_finish().
@@ -33,13 +32,12 @@ struct dig_fit {
 
 /// One set of effects, solved.
 struct dig_fit_answer {
-    double  log_evidence;
-    double  rest2; // that remains
-    double  width; // of the prior
-    double *at;    // [columns], 0 where not of the set; owned by the caller
-    double *sigma; // [columns]; may be NULL
-    // [columns * columns], 0 where not of the set; may be NULL
-    double *covariance;
+    double log_evidence;
+    double rest2; // that remains
+    double width; // of the prior
+    // The caller's, or NULL; 0 where not of the set.
+    double *at, *sigma; // [columns]
+    double *covariance; // [columns * columns]
 };
 
 DIG_MUST_CHECK enum dig_status dig_fit_make(const struct dig_lines *lines, struct dig_fit *fit);

@@ -101,6 +101,15 @@ void dig_lines_finish(struct dig_lines *const lines)
     }
 }
 
+size_t dig_lines_first(const struct dig_lines *const lines, const enum dig_effect_id effect)
+{
+    size_t c = 0;
+    while (lines->column[c].effect != effect) {
+        c++;
+    }
+    return c;
+}
+
 bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
 {
     const struct dig_lines_column *const c     = &lines->column[column];

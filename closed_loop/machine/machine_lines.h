@@ -91,6 +91,9 @@ void dig_lines_correct(const struct dig_lines *lines, const double at[],
 /// The sum of rest^2 at other values, as far as rows are trusted.
 double dig_lines_rest2(const struct dig_lines *lines, const double at[]);
 
+/// The column of an effect's first parameter; its others follow.
+size_t dig_lines_first(const struct dig_lines *lines, enum dig_effect_id effect);
+
 /// True for a column that only counts once its effect is in: the speed of a Stribeck friction.
 bool dig_lines_is_bent(const struct dig_lines *lines, size_t column);
 

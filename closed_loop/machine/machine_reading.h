@@ -13,7 +13,6 @@
 #include "closed_loop/recordings/machine_dig.h"
 #include "core/machine.h"
 #include "core/recording.h"
-#include "core/sample.h"
 
 #include <stdbool.h>
 

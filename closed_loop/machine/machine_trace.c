@@ -140,14 +140,7 @@ static void rest_by_dig(struct dig_machine_search *const s)
 // In scales.
 static double common_payload(const struct dig_machine_search *const s)
 {
-    double payload = 0.0;
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->lines.column[c];
-        if (column->effect == DIG_EFFECT_PAYLOAD && column->parameter == 0 && column->segment < 0) {
-            payload = s->lines.at[c];
-        }
-    }
-    return payload;
+    return s->lines.at[dig_lines_first(&s->lines, DIG_EFFECT_PAYLOAD)];
 }
 
 // A first dig that carried more than the others looks like a bucket that is heavier and carries

@@ -3,7 +3,6 @@
 #ifndef DIG_CLOSED_LOOP_MODEL_CANDIDATE_H
 #define DIG_CLOSED_LOOP_MODEL_CANDIDATE_H
 
-#include "core/curve.h"
 #include "core/effect.h"
 #include "core/model.h"
 
