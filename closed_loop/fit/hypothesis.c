@@ -129,7 +129,6 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
         }
     }
     for (size_t j = 0; j < l.unknowns; j++) {
-        best.free += l.high[j] > l.low[j] ? 1 : 0;
         best.low[j]  = l.low[j];
         best.high[j] = l.high[j];
     }

@@ -16,7 +16,6 @@ struct dig_fitted {
     double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
     double                misfit;                    // closed_loop/fit/likelihood.h
     double                squares;                   // of it, what is not a logarithm
-    size_t                free;                      // numbers fitted
     double                z[DIG_STEPS_MAX];          // of the batch's steps
 };
 

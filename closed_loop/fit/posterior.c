@@ -20,48 +20,44 @@ enum {
 // Accepted between these, a step is neither too short nor too long.
 static const double few_accepted = 0.2, many_accepted = 0.4;
 
+struct point {
+    double x[NUMBERS];
+    double misfit;
+    double z[DIG_STEPS_MAX]; // of the batch's steps, less their middle
+};
+
 // A cloud of points that is distributed as (the likelihood)^power within the bounds.
 struct cloud {
     struct dig_likelihood likelihood;
     double                low[NUMBERS], high[NUMBERS];
     double                power;
-    double                x[POINTS][NUMBERS];
-    double                misfit[POINTS];
-    double                z[POINTS][DIG_STEPS_MAX]; // of the batch's steps, less their middle
+    struct point          point[POINTS], old[POINTS];
     double                lower[NUMBERS * NUMBERS]; // L of the points' covariance = L L'
     double                reach;                    // a step is so many of it
     double                common[NUMBERS]; // 1 sigma of what no fit shows: dig_shifts_common()
     double                residual[DIG_LIKELIHOOD_RESIDUALS];
-    double                old_x[POINTS][NUMBERS];
-    double                old_misfit[POINTS];
-    double                old_z[POINTS][DIG_STEPS_MAX];
     double                taken[NUMBERS][TAKEN];
     double                z_sum[DIG_STEPS_MAX]; // over the points that were counted
     double                z_squares[DIG_STEPS_MAX * DIG_STEPS_MAX];
 };
 
-static double misfit_at(struct cloud *const c, const double x[])
-{
-    double squares;
-    dig_likelihood_residual(&c->likelihood, x, c->residual);
-    return dig_likelihood_misfit(&c->likelihood, c->residual, &squares);
-}
-
-// z as misfit_at() has left it.
-static void keep_z(struct cloud *const c, const size_t point)
+// Tells misfit and z of a point at its x.
+static void look(struct cloud *const c, struct point *const point)
 {
     const struct dig_likelihood *const l = &c->likelihood;
-    memcpy(c->z[point], c->residual + l->residuals - l->steps, l->steps * sizeof c->z[0][0]);
+    double                             squares;
+    dig_likelihood_residual(&c->likelihood, point->x, c->residual);
+    point->misfit = dig_likelihood_misfit(l, c->residual, &squares);
+    memcpy(point->z, c->residual + l->residuals - l->steps, l->steps * sizeof point->z[0]);
 }
 
 static void spread_out(struct cloud *const c, uint64_t *const seed)
 {
     for (size_t p = 0; p < POINTS; p++) {
         for (size_t j = 0; j < c->likelihood.numbers; j++) {
-            c->x[p][j] = c->low[j] + (c->high[j] - c->low[j]) * dig_chance_uniform(seed);
+            c->point[p].x[j] = c->low[j] + (c->high[j] - c->low[j]) * dig_chance_uniform(seed);
         }
-        c->misfit[p] = misfit_at(c, c->x[p]);
-        keep_z(c, p);
+        look(c, &c->point[p]);
     }
     c->power = 0.0;
 }
@@ -73,10 +69,10 @@ static double weigh(const struct cloud *const c, const double power, double weig
     double sum     = 0.0;
     double squares = 0.0;
     for (size_t p = 0; p < POINTS; p++) {
-        least = fmin(least, c->misfit[p]);
+        least = fmin(least, c->point[p].misfit);
     }
     for (size_t p = 0; p < POINTS; p++) {
-        weight[p] = exp(-0.5 * (power - c->power) * (c->misfit[p] - least));
+        weight[p] = exp(-0.5 * (power - c->power) * (c->point[p].misfit - least));
         sum += weight[p];
         squares += weight[p] * weight[p];
     }
@@ -108,17 +104,13 @@ static void draw_anew(struct cloud *const c, const double weight[POINTS], uint64
     const double first = dig_chance_uniform(seed);
     double       at    = weight[0]; // of the points up to from
     size_t       from  = 0;
-    memcpy(c->old_x, c->x, sizeof c->old_x);
-    memcpy(c->old_misfit, c->misfit, sizeof c->old_misfit);
-    memcpy(c->old_z, c->z, sizeof c->old_z);
+    memcpy(c->old, c->point, sizeof c->old);
     for (size_t made = 0; made < POINTS; made++) {
         const double next = sum / POINTS * (first + (double)made);
         while (from + 1 < POINTS && !(next < at)) {
             at += weight[++from];
         }
-        memcpy(c->x[made], c->old_x[from], sizeof c->x[made]);
-        memcpy(c->z[made], c->old_z[from], sizeof c->z[made]);
-        c->misfit[made] = c->old_misfit[from];
+        c->point[made] = c->old[from];
     }
 }
 
@@ -130,14 +122,15 @@ static void measure_covariance(struct cloud *const c)
     double       mean[NUMBERS] = { 0.0 };
     for (size_t p = 0; p < POINTS; p++) {
         for (size_t j = 0; j < n; j++) {
-            mean[j] += c->x[p][j] / POINTS;
+            mean[j] += c->point[p].x[j] / POINTS;
         }
     }
     for (size_t j = 0; j < n; j++) {
         for (size_t k = 0; k <= j; k++) {
             double sum = 0.0;
             for (size_t p = 0; p < POINTS; p++) {
-                sum += (c->x[p][j] - mean[j]) * (c->x[p][k] - mean[k]) / POINTS;
+                const double *const x = c->point[p].x;
+                sum += (x[j] - mean[j]) * (x[k] - mean[k]) / POINTS;
             }
             c->lower[j * n + k] = sum;
         }
@@ -164,19 +157,17 @@ static void sweep(struct cloud *const c, uint64_t *const seed)
     const size_t n        = c->likelihood.numbers;
     double       accepted = 0.0;
     for (size_t p = 0; p < POINTS; p++) {
-        double tried[NUMBERS];
+        struct point tried = { .misfit = 0.0 };
         for (size_t j = 0; j < n; j++) {
-            tried[j] = c->reach * dig_chance_normal(seed);
+            tried.x[j] = c->reach * dig_chance_normal(seed);
         }
-        dig_lower_multiply(n, c->lower, tried);
+        dig_lower_multiply(n, c->lower, tried.x);
         for (size_t j = 0; j < n; j++) {
-            tried[j] = reflect(c->x[p][j] + tried[j], c->low[j], c->high[j]);
+            tried.x[j] = reflect(c->point[p].x[j] + tried.x[j], c->low[j], c->high[j]);
         }
-        const double there = misfit_at(c, tried);
-        if (dig_chance_uniform(seed) < exp(0.5 * c->power * (c->misfit[p] - there))) {
-            memcpy(c->x[p], tried, n * sizeof tried[0]);
-            c->misfit[p] = there;
-            keep_z(c, p);
+        look(c, &tried);
+        if (dig_chance_uniform(seed) < exp(0.5 * c->power * (c->point[p].misfit - tried.misfit))) {
+            c->point[p] = tried;
             accepted += 1.0 / POINTS;
         }
     }
@@ -188,10 +179,11 @@ static void count_z(struct cloud *const c)
 {
     const size_t steps = c->likelihood.steps;
     for (size_t p = 0; p < POINTS; p++) {
+        const double *const z = c->point[p].z;
         for (size_t k = 0; k < steps; k++) {
-            c->z_sum[k] += c->z[p][k];
+            c->z_sum[k] += z[k];
             for (size_t m = 0; m < steps; m++) {
-                c->z_squares[k * steps + m] += c->z[p][k] * c->z[p][m];
+                c->z_squares[k * steps + m] += z[k] * z[m];
             }
         }
     }
@@ -234,7 +226,8 @@ static void anneal(struct cloud *const c, uint64_t seed)
             for (size_t j = 0; j < c->likelihood.numbers; j++) {
                 const double off =
                     c->common[j] > 0.0 ? c->common[j] * dig_chance_normal(&seed) : 0.0;
-                c->taken[j][s * POINTS + p] = reflect(c->x[p][j] + off, c->low[j], c->high[j]);
+                c->taken[j][s * POINTS + p] =
+                    reflect(c->point[p].x[j] + off, c->low[j], c->high[j]);
             }
         }
     }
