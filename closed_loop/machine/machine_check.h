@@ -73,7 +73,7 @@ struct dig_check_curves {
     double *mended_drive_N, *mended_load_N; // read as found best, with the causes named taken off
 };
 
-/// Free with dig_machine_check_finish().
+/// Free with dig_machine_air_check_finish().
 struct dig_machine_air_check {
     double                     duration_s;
     double                     angles_rad[DIG_JOINTS][2]; // least and most, as read best

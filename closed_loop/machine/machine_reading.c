@@ -40,7 +40,8 @@ static const enum dig_joint orders[][DIG_JOINTS] = {
 };
 enum { ORDERS = sizeof orders / sizeof orders[0] };
 
-struct dig_reading dig_reading_plain(void)
+// As the columns say.
+static struct dig_reading plain_reading(void)
 {
     struct dig_reading plain = { .degrees = false };
     for (int j = 0; j < DIG_JOINTS; j++) {
@@ -418,7 +419,7 @@ enum dig_status dig_reading_find(const struct dig_machine *const machine,
     if (s.at == NULL) {
         return DIG_ENOMEM;
     }
-    struct dig_reading angles = dig_reading_plain();
+    struct dig_reading angles = plain_reading();
     angles.degrees            = degrees;
     pick(air, degrees, &s);
     s.cost = INFINITY;

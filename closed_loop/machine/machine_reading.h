@@ -31,9 +31,6 @@ struct dig_reading {
     double         factor[DIG_JOINTS];
 };
 
-/// As the columns say.
-struct dig_reading dig_reading_plain(void);
-
 /// True where angles are so large that they can only be degrees.
 bool dig_reading_in_degrees(const struct dig_machine_dig *dig);
 
