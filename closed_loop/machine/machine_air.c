@@ -69,26 +69,18 @@ static double scatter_Pa(const struct dig_machine *const     machine,
     return fmax(seen, filed);
 }
 
-// Both, by chamber and by drive.
-struct scatter {
-    double Pa[DIG_JOINTS * DIG_CHAMBERS];
-    double N[DIG_JOINTS];
-};
-
-static struct scatter scatter_of(const struct dig_machine *const     machine,
-                                 const struct dig_machine_dig *const dig)
+// The same of every drive's push.
+static void scatter_of(const struct dig_machine *const     machine,
+                       const struct dig_machine_dig *const dig, double scatter_N[DIG_JOINTS])
 {
-    struct scatter s;
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_cylinder *const cylinder = &machine->cylinder[j];
-        double *const                    Pa       = &s.Pa[(size_t)DIG_CHAMBERS * (size_t)j];
 
-        Pa[DIG_CHAMBER_HEAD] = scatter_Pa(machine, dig, DIG_CHAMBERS * j + DIG_CHAMBER_HEAD);
-        Pa[DIG_CHAMBER_ROD]  = scatter_Pa(machine, dig, DIG_CHAMBERS * j + DIG_CHAMBER_ROD);
-        s.N[j] = cylinder->count * hypot(dig_cylinder_head_m2(cylinder) * Pa[DIG_CHAMBER_HEAD],
-                                         dig_cylinder_rod_m2(cylinder) * Pa[DIG_CHAMBER_ROD]);
+        const double head_Pa = scatter_Pa(machine, dig, DIG_CHAMBERS * j + DIG_CHAMBER_HEAD);
+        const double rod_Pa  = scatter_Pa(machine, dig, DIG_CHAMBERS * j + DIG_CHAMBER_ROD);
+        scatter_N[j]         = cylinder->count * hypot(dig_cylinder_head_m2(cylinder) * head_Pa,
+                                                       dig_cylinder_rod_m2(cylinder) * rod_Pa);
     }
-    return s;
 }
 
 static void fill_means(struct dig_air_segment *const segment, const struct dig_air_point point[],
@@ -183,11 +175,12 @@ static void add_segment(struct dig_air *const air, const struct dig_machine_dig 
     if (to < from + 2) {
         return;
     }
-    const struct scatter scatter = scatter_of(&air->machine, dig);
-    const double         begin_s = dig->time_s[from] + half_s;
-    const double         end_s   = dig->time_s[to - 1] - half_s;
-    const double         last_s  = dig->time_s[dig->samples - 1];
-    const double         rate_Hz = (double)(to - from) / (dig->time_s[to - 1] - dig->time_s[from]);
+    double scatter_N[DIG_JOINTS];
+    scatter_of(&air->machine, dig, scatter_N);
+    const double begin_s = dig->time_s[from] + half_s;
+    const double end_s   = dig->time_s[to - 1] - half_s;
+    const double last_s  = dig->time_s[dig->samples - 1];
+    const double rate_Hz = (double)(to - from) / (dig->time_s[to - 1] - dig->time_s[from]);
 
     // Points from beside the air to beside it, as far as there is a recording.
     const long   before = lround(floor(fmin(POINTS_BESIDE, begin_s / step_s)));
@@ -211,7 +204,7 @@ static void add_segment(struct dig_air *const air, const struct dig_machine_dig 
                                                       .first_row   = air->rows };
     fill_means(&air->segment[segment], &air->point[begin], core);
     for (size_t p = 0; p + POINTS_IN_BLOCK <= core; p += POINTS_IN_BLOCK) {
-        add_rows(air, begin + p, POINTS_IN_BLOCK, segment, scatter.N, fmax(rate_Hz * step_s, 1e-3));
+        add_rows(air, begin + p, POINTS_IN_BLOCK, segment, scatter_N, fmax(rate_Hz * step_s, 1e-3));
     }
     air->segment[segment].rows = air->rows - air->segment[segment].first_row;
 }

@@ -54,25 +54,22 @@ static double decompose(const size_t n, double h[])
     return log_det;
 }
 
-// The columns of a set that are solved for; how many.
-static size_t columns_of(const struct dig_lines *const lines, const unsigned set, size_t column[])
+void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
+                        struct dig_fit_answer *const answer)
 {
-    size_t n = 0;
-    for (size_t c = 0; c < lines->columns; c++) {
-        if (((set >> lines->column[c].effect) & 1U) != 0 && !dig_lines_is_bent(lines, c)) {
-            column[n++] = c;
+    assert(fit != NULL && widths != NULL && answer != NULL);
+    const size_t  all = fit->lines->columns;
+    double *const h   = fit->work;
+    double        x[DIG_LINES_COLUMNS_MAX];
+    double        share[DIG_LINES_COLUMNS_MAX];
+    size_t        column[DIG_LINES_COLUMNS_MAX];
+    size_t        n = 0;
+    for (size_t c = 0; c < all; c++) {
+        if (widths[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
+            column[n]  = c;
+            share[n++] = widths[c];
         }
     }
-    return n;
-}
-
-// The n columns of a list, with priors so wide each.
-static void solve_columns(const struct dig_fit *const fit, const size_t n, const size_t column[],
-                          const double share[], struct dig_fit_answer *const answer)
-{
-    const size_t  all = fit->lines->columns;
-    double        x[DIG_LINES_COLUMNS_MAX];
-    double *const h = fit->work;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j <= i; j++) {
             h[i * n + j] = share[i] * share[j] * fit->slope2[column[i] * all + column[j]] / fit->s2;
@@ -89,6 +86,7 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
         gain -= x[i] * share[i] * fit->slope_rest[column[i]] / fit->s2;
         size2 += x[i] * x[i];
     }
+    answer->width        = 1.0;
     answer->log_evidence = 0.5 * (gain - log_det);
     answer->rest2        = fit->rest2 - fit->s2 * (gain + size2);
     if (answer->at != NULL) {
@@ -121,31 +119,12 @@ static void solve_columns(const struct dig_fit *const fit, const size_t n, const
 static void solve_at(const struct dig_fit *const fit, const unsigned set, const size_t wide,
                      struct dig_fit_answer *const answer)
 {
-    size_t       column[DIG_LINES_COLUMNS_MAX];
-    double       share[DIG_LINES_COLUMNS_MAX];
-    const size_t n = columns_of(fit->lines, set, column);
-    for (size_t i = 0; i < n; i++) {
-        share[i] = width[wide];
-    }
-    answer->width = width[wide];
-    solve_columns(fit, n, column, share, answer);
-}
-
-void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
-                        struct dig_fit_answer *const answer)
-{
-    assert(fit != NULL && widths != NULL && answer != NULL);
-    size_t column[DIG_LINES_COLUMNS_MAX];
-    double share[DIG_LINES_COLUMNS_MAX];
-    size_t n = 0;
+    double widths[DIG_LINES_COLUMNS_MAX];
     for (size_t c = 0; c < fit->lines->columns; c++) {
-        if (widths[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
-            column[n]  = c;
-            share[n++] = widths[c];
-        }
+        widths[c] = ((set >> fit->lines->column[c].effect) & 1U) != 0 ? width[wide] : 0.0;
     }
-    answer->width = 1.0;
-    solve_columns(fit, n, column, share, answer);
+    dig_fit_solve_each(fit, widths, answer);
+    answer->width = width[wide];
 }
 
 // Moves the equations from where the lines are to all absent; bent columns stay.

@@ -75,7 +75,8 @@ static void refine(struct dig_machine_search *const s)
         dig_lines_update(&s->lines, s->set);
         sum_all(s);
         s->fit.s2                    = s2; // of all effects together, which these are not
-        struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+        struct dig_fit_answer answer = { .at = s->at };
+        double                tried[DIG_LINES_COLUMNS_MAX];
         dig_fit_solve(&s->fit, s->set, &answer);
 
         const double now =
@@ -84,12 +85,12 @@ static void refine(struct dig_machine_search *const s)
         for (int halved = 0; halved < 6; halved++) {
             const double share = ldexp(1.0, -halved);
             for (size_t c = 0; c < n; c++) {
-                s->sigma[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
+                tried[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
             }
-            if (dig_lines_rest2(&s->lines, s->sigma) + penalty(s, s->sigma, answer.width) <= now) {
+            if (dig_lines_rest2(&s->lines, tried) + penalty(s, tried, answer.width) <= now) {
                 for (size_t c = 0; c < n; c++) {
-                    moved          = fmax(moved, fabs(s->sigma[c] - s->lines.at[c]));
-                    s->lines.at[c] = s->sigma[c];
+                    moved          = fmax(moved, fabs(tried[c] - s->lines.at[c]));
+                    s->lines.at[c] = tried[c];
                 }
                 break;
             }
