@@ -224,10 +224,10 @@ static enum dig_status place(const struct dig_machine *const   machine,
     lay_out(machine, set, dig, v);
     const struct found found   = search(set, v, asked);
     const double       limit_m = limit_share * set->tooth_m;
+    const char *const  along =
+        asked < 0 ? "any trajectory of the table" : set->trajectory[asked].name;
     if (found.trajectory < 0) {
-        return dig_error_set(error, DIG_ENOMATCH, "no dig along %s found in it",
-                             asked < 0 ? "any trajectory of the table"
-                                       : set->trajectory[asked].name);
+        return dig_error_set(error, DIG_ENOMATCH, "no dig along %s found in it", along);
     }
     const struct dig_route route = dig_route_make(&set->trajectory[found.trajectory], set->tooth_m);
     dig->track                   = fit_track(&route, v, &found, set->tooth_m);
@@ -237,8 +237,7 @@ static enum dig_status place(const struct dig_machine *const   machine,
             error, DIG_ENOMATCH,
             "no dig along %s in it: the nearest path lies %.3f bucket lengths off, expected at "
             "most %.2f",
-            asked < 0 ? "any trajectory of the table" : set->trajectory[asked].name,
-            fmax(dig->track.rms_m, found.off_m / 3.0) / set->tooth_m, limit_share);
+            along, fmax(dig->track.rms_m, found.off_m / 3.0) / set->tooth_m, limit_share);
     }
     split(machine, set, &route, v, &found, dig);
     return DIG_OK;
@@ -308,13 +307,24 @@ static size_t copy_complete(const struct dig_machine_recording *const recording,
     return n;
 }
 
-static enum dig_status fill_rates(const struct dig_machine *const machine,
-                                  struct dig_machine_dig *const   dig)
+// The samples that can be used, with their times and rates. *dig is to be freed whatever comes.
+static enum dig_status take_samples(const struct dig_machine *const           machine,
+                                    const struct dig_machine_recording *const recording,
+                                    struct dig_machine_dig *const             dig,
+                                    struct dig_error *const                   error)
 {
-    double *const joint_rad = malloc(DIG_JOINTS * dig->samples * sizeof *joint_rad);
-    if (joint_rad == NULL) {
-        return DIG_ENOMEM;
+    const size_t  rows      = recording->rows + 1;
+    double *const joint_rad = malloc(DIG_JOINTS * rows * sizeof *joint_rad);
+    *dig                    = (struct dig_machine_dig){
+                           .sample = malloc(rows * sizeof *dig->sample),
+                           .time_s = malloc(rows * sizeof *dig->time_s),
+                           .rates  = malloc(rows * sizeof *dig->rates),
+    };
+    if (joint_rad == NULL || dig->sample == NULL || dig->time_s == NULL || dig->rates == NULL) {
+        free(joint_rad);
+        return dig_error_set(error, DIG_ENOMEM, "%zu samples", recording->rows);
     }
+    dig->samples = copy_complete(recording, dig->sample);
     for (size_t i = 0; i < dig->samples; i++) {
         dig->time_s[i] = 1e-9 * (double)(dig->sample[i].time_ns - dig->sample[0].time_ns);
         for (size_t j = 0; j < DIG_JOINTS; j++) {
@@ -325,44 +335,12 @@ static enum dig_status fill_rates(const struct dig_machine *const machine,
                       dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad),
                       dig->rates);
     free(joint_rad);
-    return DIG_OK;
-}
-
-// The samples that can be used, with their times and rates.
-static enum dig_status take_samples(const struct dig_machine *const           machine,
-                                    const struct dig_machine_recording *const recording,
-                                    struct dig_machine_dig *const             dig,
-                                    struct dig_error *const                   error)
-{
-    const size_t           rows = recording->rows + 1;
-    struct dig_machine_dig made = {
-        .sample = malloc(rows * sizeof *made.sample),
-        .time_s = malloc(rows * sizeof *made.time_s),
-        .rates  = malloc(rows * sizeof *made.rates),
-    };
-    enum dig_status status = DIG_OK;
-    if (made.sample == NULL || made.time_s == NULL || made.rates == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "%zu samples", recording->rows);
-        goto failed;
-    }
-    made.samples = copy_complete(recording, made.sample);
-    if (made.samples < 50) {
-        status = dig_error_set(
-            error, DIG_EINVAL,
-            "%zu samples with all angles and the bucket cylinder's pressures, expected 50 at "
-            "least",
-            made.samples);
-        goto failed;
-    }
-    status = fill_rates(machine, &made);
-    if (status != DIG_OK) {
-        goto failed;
-    }
-    *dig = made;
-    return DIG_OK;
-failed:
-    dig_machine_dig_finish(&made);
-    return status;
+    return dig->samples >= 50
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "%zu samples with all angles and the bucket cylinder's pressures, "
+                               "expected 50 at least",
+                               dig->samples);
 }
 
 enum dig_status dig_machine_dig_make(const struct dig_machine *const           machine,
@@ -401,9 +379,10 @@ enum dig_status dig_machine_dig_make_air(const struct dig_machine *const        
                                          struct dig_error *const                   error)
 {
     assert(machine != NULL && recording != NULL && dig != NULL);
-    struct dig_machine_dig made   = { .samples = 0 };
+    struct dig_machine_dig made;
     const enum dig_status  status = take_samples(machine, recording, &made, error);
     if (status != DIG_OK) {
+        dig_machine_dig_finish(&made);
         return status;
     }
     made.trajectory = -1;
