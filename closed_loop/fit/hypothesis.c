@@ -22,10 +22,9 @@ void dig_hypothesis_bounds(const struct dig_soil *const       soil,
                            double high[])
 {
     for (size_t a = 0; a < DIG_AXES; a++) {
-        const bool   is_free = soil->surface->set->axis_count[a] > 1;
-        const double reach   = hypothesis->outside ? 2.0 : 1.0;
-        low[a]               = is_free ? -reach : 0.0;
-        high[a]              = is_free ? fmin(reach, hypothesis->outside ? beyond_grid : 1.0) : 0.0;
+        const bool is_free = soil->surface->set->axis_count[a] > 1;
+        low[a]             = is_free ? (hypothesis->outside ? -2.0 : -1.0) : 0.0;
+        high[a]            = is_free ? (hypothesis->outside ? beyond_grid : 1.0) : 0.0;
     }
     for (size_t e = 0; e < hypothesis->effects; e++) {
         const struct dig_effect *const effect  = dig_effect_of(hypothesis->effect[e]);

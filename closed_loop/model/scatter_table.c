@@ -108,28 +108,23 @@ enum dig_status dig_scatter_measure(const char *const                        pat
                                     struct dig_error *const                  error)
 {
     assert(path != NULL && surface != NULL && scatter != NULL);
-    struct dig_store     *store  = NULL;
-    struct gathering     *g      = calloc(1, sizeof *g);
-    const enum dig_status opened = g == NULL ? DIG_ENOMEM : dig_store_open(path, &store, error);
-    enum dig_status       status = opened;
+    struct dig_store *store  = NULL;
+    struct gathering  g      = { .surface = surface };
+    enum dig_status   status = dig_store_open(path, &store, error);
     if (status == DIG_OK) {
-        g->surface                           = surface;
-        const struct dig_run_visitor visitor = { gather, g };
+        const struct dig_run_visitor visitor = { gather, &g };
         status                               = dig_store_walk(store, &visitor, error);
     }
     if (status == DIG_OK) {
-        status = finish_entry(g);
+        status = finish_entry(&g);
     }
     if (status == DIG_OK) {
-        status = dig_scatter_pool(surface, g->residuals, g->residual, scatter);
+        status = dig_scatter_pool(surface, g.residuals, g.residual, scatter);
     }
     if (status == DIG_ENOMEM) {
         (void)dig_error_set(error, status, "%s: no memory", path);
     }
     dig_store_close(store);
-    if (g != NULL) {
-        free(g->residual);
-    }
-    free(g);
+    free(g.residual);
     return status;
 }

@@ -84,8 +84,7 @@ enum dig_status dig_soil_terms_choose(const size_t beds, const double u[], const
     const size_t magnitudes = keep_unlike(beds, level);
     choose_knots(beds, u, strength, magnitudes, level, template);
     template->shapes = (magnitudes > 1 ? 2 : 1) + template->knots;
-    template->terms  = template->shapes;
-    template->terms *= template->powers;
+    template->terms  = template->shapes *template->powers;
     free(level);
     return DIG_OK;
 }
