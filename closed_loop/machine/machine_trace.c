@@ -76,7 +76,7 @@ static void refine(struct dig_machine_search *const s)
         sum_all(s);
         s->fit.s2                    = s2; // of all effects together, which these are not
         struct dig_fit_answer answer = { .at = s->at };
-        double                tried[DIG_LINES_COLUMNS_MAX];
+        double                tried[DIG_LINES_COLUMNS_MAX] = { 0.0 };
         dig_fit_solve(&s->fit, s->set, &answer);
 
         const double now =

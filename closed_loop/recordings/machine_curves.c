@@ -138,6 +138,12 @@ static double pace_of(const struct dig_curve_set *const   set,
     return to_s > from_s ? table_s / (to_s - from_s) : 1.0;
 }
 
+static size_t beside(const struct dig_machine_dig *const dig, const size_t at, const double by_s)
+{
+    const size_t last = dig->samples - 1;
+    return dig_machine_dig_sample_at(dig, dig->time_s[at < last ? at : last] + by_s);
+}
+
 // How the machine stood while it dug.
 static void tell_pitch(const struct dig_machine_dig *const dig, struct dig_measured *const measured)
 {
@@ -161,11 +167,8 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
                                         struct dig_measured *const          measured)
 {
     assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
-    const size_t last   = dig->samples - 1;
-    const double from_s = dig->time_s[dig->contact < last ? dig->contact : last] - beside_s;
-    const double to_s   = dig->time_s[dig->end < last ? dig->end : last] + beside_s;
-    const size_t from   = dig_machine_dig_sample_at(dig, from_s);
-    const size_t to     = dig_machine_dig_sample_at(dig, to_s);
+    const size_t             from    = beside(dig, dig->contact, -beside_s);
+    const size_t             to      = beside(dig, dig->end, beside_s);
     struct dig_window *const window  = calloc(1, sizeof *window);
     const size_t             rows    = to > from ? to - from : 0;
     const size_t             every   = how == DIG_MEASURE_ROUGHLY ? rows / DIG_CURVE_POINTS + 1 : 1;
