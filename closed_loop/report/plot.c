@@ -71,8 +71,8 @@ static enum dig_status run_gnuplot(FILE *const script, FILE *const svg,
 {
     char                       program[] = "gnuplot";
     char                       option[]  = "-d";
-    char                       path[]    = "/dev/stdin";
-    char *const                argv[]    = { program, option, path, NULL };
+    char                       input[]   = "-";
+    char *const                argv[]    = { program, option, input, NULL };
     posix_spawn_file_actions_t actions;
     pid_t                      child  = -1;
     int                        status = -1;
@@ -234,7 +234,7 @@ enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const t
     }
     put_script(script, plot, width - LEFT - (plot->right_label != NULL ? LEFT : 0),
                height - above - below);
-    if (fflush(script) != 0) {
+    if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0) {
         (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
         goto done;
     }
