@@ -24,7 +24,7 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 rooms='
 core                   approach approach_set bed_plan command_line contact curve did_you_mean effect effect_set
                        error geometry ground help linkage log_normal machine model name part recording regular
-                       sample scene sha256 shell similar status table_step text units vec2
+                       sample scene sha256 shell similar sort status table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve

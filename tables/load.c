@@ -1,5 +1,6 @@
 #include "tables/load.h"
 
+#include "core/sort.h"
 #include "tables/density_scale.h"
 #include "tables/grounds.h"
 #include "tables/load_approaches.h"
@@ -23,13 +24,6 @@ static enum dig_status no_memory(const char *const path, struct dig_error *const
     return DIG_ENOMEM;
 }
 
-static int compare(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The sorted different values of one axis.
 static void build_axis(struct dig_curve_set *const set, const int a)
 {
@@ -37,7 +31,7 @@ static void build_axis(struct dig_curve_set *const set, const int a)
     for (size_t i = 0; i < set->entries; i++) {
         axis[i] = set->gravel[i].value[a];
     }
-    qsort(axis, set->entries, sizeof *axis, compare);
+    dig_sort(set->entries, axis);
     size_t count = 0;
     for (size_t i = 0; i < set->entries; i++) {
         if (count == 0 || axis[i] > axis[count - 1]) {

@@ -1,8 +1,8 @@
 #include "closed_loop/design/design.h"
 
 #include "closed_loop/design/design_view.h"
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
+#include "core/sort.h"
 
 #include <assert.h>
 #include <math.h>
@@ -61,7 +61,7 @@ static enum dig_status weigh_gravel(const struct dig_design_table *const table, 
         }
     }
     for (size_t a = 0; a < DIG_AXES; a++) {
-        dig->sd[a] = dig_chance_median(places, left[a]);
+        dig->sd[a] = dig_sort_median(places, left[a]);
     }
     return DIG_OK;
 }

@@ -1,7 +1,7 @@
 #include "closed_loop/design/design_view.h"
 
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
+#include "core/sort.h"
 #include "estimator/effects/effect.h"
 
 #include <math.h>
@@ -76,12 +76,12 @@ static void take_medians(const size_t places, struct sigmas *const s,
 {
     dig->close_sigmas = (double)INFINITY;
     for (int a = 0; a < DIG_EFFECTS; a++) {
-        dig->sigmas[a] = dig->tells[a] ? dig_chance_median(places, s->alone[a]) : 0.0;
+        dig->sigmas[a] = dig->tells[a] ? dig_sort_median(places, s->alone[a]) : 0.0;
         for (int b = a + 1; b < DIG_EFFECTS; b++) {
             if (!dig->tells[a] || !dig->tells[b]) {
                 continue;
             }
-            const double sigmas = dig_chance_median(places, s->pair[a][b]);
+            const double sigmas = dig_sort_median(places, s->pair[a][b]);
             dig->pairs++;
             dig->apart += sigmas >= apart_from ? 1 : 0;
             if (sigmas < dig->close_sigmas) {

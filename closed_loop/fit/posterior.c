@@ -3,6 +3,7 @@
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
+#include "core/sort.h"
 
 #include <assert.h>
 #include <math.h>
@@ -233,13 +234,6 @@ static void anneal(struct cloud *const c, uint64_t seed)
     }
 }
 
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The shortest interval that holds nine points of ten. A bound is in it that the posterior leans
 // on: less than a twentieth lies between, and more than a fiftieth within a tenth of the interval
 // of it.
@@ -248,7 +242,7 @@ static void set_interval(struct cloud *const c, const size_t j, struct dig_fitte
     enum { INSIDE = TAKEN / 10 * 9, FEW = TAKEN / 20, SOME = TAKEN / 50 };
     double *const taken = c->taken[j];
     size_t        first = 0;
-    qsort(taken, TAKEN, sizeof taken[0], ascending);
+    dig_sort(TAKEN, taken);
     for (size_t i = 1; i + INSIDE <= TAKEN; i++) {
         const double wide = taken[i + INSIDE - 1] - taken[i];
         first             = wide < taken[first + INSIDE - 1] - taken[first] ? i : first;

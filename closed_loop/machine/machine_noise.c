@@ -1,8 +1,9 @@
 #include "closed_loop/machine/machine_noise.h"
 
+#include "core/sort.h"
+
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 // So many differences of blocks tell their size to a sixth.
 enum { LEAST = 16 };
@@ -16,13 +17,6 @@ static const double median_size = 0.6745;
 
 // Less than this is within what the rows of white noise differ by.
 static const double least_more = 1.25;
-
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 // What the rows of a joint differ by so many blocks apart, in the sigmas of one; 1 where too few
 // tell. room: [rows].
@@ -45,8 +39,7 @@ static double difference(const struct dig_air *const air, const double rest[],
     if (n < LEAST) {
         return 1.0;
     }
-    qsort(room, n, sizeof room[0], ascending);
-    return room[n / 2] / (median_size * sqrt(2.0));
+    return dig_sort_median(n, room) / (median_size * sqrt(2.0));
 }
 
 static double scatter_of(const struct dig_air *const air, const double rest[],

@@ -1,5 +1,7 @@
 #include "closed_loop/model/soil_terms.h"
 
+#include "core/sort.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,18 +16,11 @@ static bool is_same(const double a, const double b)
     return fabs(a - b) <= 1e-6;
 }
 
-static int compare(const void *const left, const void *const right)
-{
-    const double a = *(const double *)left;
-    const double b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
 // Sorts level[] and drops those that are the same; how many stay.
 static size_t keep_unlike(const size_t levels, double level[])
 {
     size_t kept = 0;
-    qsort(level, levels, sizeof *level, compare);
+    dig_sort(levels, level);
     for (size_t i = 0; i < levels; i++) {
         if (kept == 0 || !is_same(level[i], level[kept - 1])) {
             level[kept++] = level[i];
@@ -61,7 +56,7 @@ static void choose_knots(const size_t beds, const double u[], const double stren
             knot[knots++] = magnitude[i];
         }
     }
-    qsort(knot, knots, sizeof *knot, compare);
+    dig_sort(knots, knot);
     template->knots = knots > 2 ? knots : 0;
     memcpy(template->knot, knot, template->knots * sizeof *knot);
 }

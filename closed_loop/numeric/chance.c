@@ -1,10 +1,10 @@
 #include "closed_loop/numeric/chance.h"
 
+#include "core/sort.h"
 #include "core/units.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 static uint64_t next(uint64_t *const state)
 {
@@ -33,24 +33,10 @@ size_t dig_chance_index(uint64_t *const state, const size_t n)
     return (size_t)(next(state) % n);
 }
 
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-double dig_chance_median(const size_t n, double value[])
-{
-    assert(n > 0 && value != NULL);
-    qsort(value, n, sizeof value[0], ascending);
-    return value[n / 2];
-}
-
 void dig_chance_interval(const size_t n, double drawn[], double *const low, double *const high)
 {
     assert(n > 0 && drawn != NULL && low != NULL && high != NULL);
-    qsort(drawn, n, sizeof drawn[0], ascending);
+    dig_sort(n, drawn);
     *low  = drawn[n / 20];
     *high = drawn[n - 1 - n / 20];
 }

@@ -15,9 +15,6 @@ double dig_chance_normal(uint64_t *state);
 /// One of n, n > 0.
 size_t dig_chance_index(uint64_t *state, size_t n);
 
-/// Sorts n > 0 numbers; the middle one.
-double dig_chance_median(size_t n, double value[]);
-
 /// Sorts n > 0 draws and takes the ends of the interval that holds nine of ten.
 void dig_chance_interval(size_t n, double drawn[], double *low, double *high);
 

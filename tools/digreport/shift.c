@@ -1,5 +1,6 @@
 #include "tools/digreport/shift.h"
 
+#include "core/sort.h"
 #include "core/text.h"
 #include "files/lcm/lcm_log.h"
 
@@ -271,16 +272,9 @@ const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_
     return found != NULL && found->known ? found : NULL;
 }
 
-static int ascending(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return x < y ? -1 : x > y ? 1 : 0;
-}
-
 static double median(const size_t n, double value[])
 {
-    qsort(value, n, sizeof value[0], ascending);
+    dig_sort(n, value);
     return n == 0 ? (double)NAN : 0.5 * (value[(n - 1) / 2] + value[n / 2]);
 }
 
