@@ -15,7 +15,17 @@ enum {
 
 static const double enough = 1e-2; // a fall of the misfit that is none
 
-static const double beyond_grid = 1.4; // half the grid's width from its middle, times this
+// Places outside the grid, which is -1 to 1.
+static const double least_outside = -2.0, most_outside = 1.4;
+
+// Where outside the grid an axis begins: friction is never less than none.
+static double least_place(const struct dig_response_surface *const surface, const size_t axis)
+{
+    double                  place[DIG_AXES];
+    const struct dig_gravel none = { { [DIG_AXIS_DENSITY_kgpm3] = 1e-9 } };
+    dig_response_surface_place(surface, &none, place);
+    return fmax(least_outside, place[axis]);
+}
 
 void dig_hypothesis_bounds(const struct dig_soil *const       soil,
                            const struct dig_hypothesis *const hypothesis, double low[],
@@ -23,8 +33,8 @@ void dig_hypothesis_bounds(const struct dig_soil *const       soil,
 {
     for (size_t a = 0; a < DIG_AXES; a++) {
         const bool is_free = soil->surface->set->axis_count[a] > 1;
-        low[a]             = is_free ? (hypothesis->outside ? -2.0 : -1.0) : 0.0;
-        high[a]            = is_free ? (hypothesis->outside ? beyond_grid : 1.0) : 0.0;
+        low[a]  = is_free ? (hypothesis->outside ? least_place(soil->surface, a) : -1.0) : 0.0;
+        high[a] = is_free ? (hypothesis->outside ? most_outside : 1.0) : 0.0;
     }
     for (size_t e = 0; e < hypothesis->effects; e++) {
         const struct dig_effect *const effect  = dig_effect_of(hypothesis->effect[e]);

@@ -192,9 +192,39 @@ static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
     }
 }
 
+// Of tables whose frictions begin near nothing and far from it.
+static void a_gravel_outside_the_grid_has_no_less_than_no_friction(void **state)
+{
+    (void)state;
+    static const double               first[]    = { 0.05, 0.1, 0.3, 0.5 };
+    const struct dig_hypothesis       hypothesis = { .outside = true };
+    const struct dig_curve_set *const made       = soil->surface->set;
+    for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
+        double rolling[] = { first[i], 0.9 };
+        double low[DIG_HYPOTHESIS_NUMBERS], high[DIG_HYPOTHESIS_NUMBERS];
+
+        struct dig_curve_set               set = *made;
+        static struct dig_response_surface surface;
+        static struct dig_soil             beside;
+        set.axis[DIG_AXIS_ROLLING]       = rolling;
+        set.axis_count[DIG_AXIS_ROLLING] = 2;
+        surface.set                      = &set;
+        beside.surface                   = &surface;
+        dig_hypothesis_bounds(&beside, &hypothesis, low, high);
+        const struct dig_gravel least = dig_response_surface_gravel(&surface, low);
+        const struct dig_gravel most  = dig_response_surface_gravel(&surface, high);
+        for (int a = 0; a < DIG_AXES; a++) {
+            assert_true(least.value[a] >= -1e-12);
+            assert_true(least.value[a] < set.axis[a][0]);
+            assert_true(most.value[a] > set.axis[a][set.axis_count[a] - 1]);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_gravel_outside_the_grid_has_no_less_than_no_friction),
         cmocka_unit_test(the_tables_error_counts_for_less_beside_larger_digs),
         cmocka_unit_test(a_fit_ends_where_the_squares_it_tells_are_least),
     };
