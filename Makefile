@@ -77,7 +77,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind bench-ablation check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
+.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind bench-product bench-ablation check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -316,10 +316,16 @@ $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(libs)
 BLIND_N     ?= 1000
 BLIND_TABLE ?= tables/reference_rig.sqlite
 blind_objs  := $(call objs,$(filter-out $(test_src),$(wildcard tests/blind/*.c)))
-bench-blind: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig ## How often digloop trace is right, on campaigns it never saw
+blind       := $(BUILD)/tests/blind/blind --bin $(BUILD)/bin --split judge
+bench-blind bench-product: $(BUILD)/tests/blind/blind $(BUILD)/bin/digloop $(BUILD)/bin/digrig
+bench-blind: ## How often digloop trace is right, on campaigns it never saw
 	$(Q)mkdir -p $(BUILD)/blind
-	$(Q)$(BUILD)/tests/blind/blind --table $(BLIND_TABLE) --bin $(BUILD)/bin --cache $(BUILD)/blind \
-	    --split judge -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
+	$(Q)$(blind) --table $(BLIND_TABLE) --cache $(BUILD)/blind -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
+
+bench-product: ## The same in the open, by tables/product.sqlite (BLIND_N=20: five minutes)
+	$(Q)mkdir -p $(BUILD)/blind_product
+	$(Q)$(blind) --table tables/product.sqlite --scene config/scenes/product.yaml --data tests/data/product \
+	    --cache $(BUILD)/blind_product -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind_product.json $(BLIND_ARGS)
 
 bench-ablation: $(BUILD)/tests/blind/blind ## What each rule of the closed loop is worth, on the split for development (ABLATION_N=20)
 	$(Q)mkdir -p $(BUILD)/blind

@@ -24,6 +24,7 @@ static const char help[] =
     "\n"
     "  --bin DIR         where digloop and digrig are (build/bin)\n"
     "  --data DIR        where the digs are (tests/data)\n"
+    "  --scene FILE      the scene that they were dug in (config/scenes/rig.yaml)\n"
     "  --cache DIR       for exact machine recordings, kept between calls (build/blind)\n"
     "  --split dev|judge seeds to develop with, or to judge with (dev)\n"
     "  --seed N          other seeds of that split: campaigns that no run has drawn before (0)\n"
@@ -38,7 +39,7 @@ static const char help[] =
     "exit codes: 0 done, whatever the criteria say; 1 it failed; 2 bad usage\n";
 
 struct options {
-    const char *table, *bin, *data, *cache, *split, *only, *keep, *json;
+    const char *table, *bin, *data, *scene, *cache, *split, *only, *keep, *json;
     size_t      n, jobs;
     uint64_t    seed;
     bool        make_only;
@@ -62,22 +63,18 @@ static int usage(const char *const what)
 
 static bool parse(const int argc, char *argv[], struct options *const options)
 {
-    enum { TABLE = 256, BIN, DATA, CACHE, SPLIT, SEED, ONLY, KEEP, MAKE, JSON };
+    enum { TABLE = 256, BIN, DATA, SCENE, CACHE, SPLIT, SEED, ONLY, KEEP, MAKE, JSON };
     static const struct option known[] = {
-        { "table", required_argument, NULL, TABLE },
-        { "bin", required_argument, NULL, BIN },
-        { "data", required_argument, NULL, DATA },
-        { "cache", required_argument, NULL, CACHE },
-        { "split", required_argument, NULL, SPLIT },
-        { "seed", required_argument, NULL, SEED },
-        { "only", required_argument, NULL, ONLY },
-        { "keep", required_argument, NULL, KEEP },
-        { "make", no_argument, NULL, MAKE },
-        { "json", required_argument, NULL, JSON },
-        { NULL, 0, NULL, 0 },
+        { "table", required_argument, NULL, TABLE }, { "bin", required_argument, NULL, BIN },
+        { "data", required_argument, NULL, DATA },   { "scene", required_argument, NULL, SCENE },
+        { "cache", required_argument, NULL, CACHE }, { "split", required_argument, NULL, SPLIT },
+        { "seed", required_argument, NULL, SEED },   { "only", required_argument, NULL, ONLY },
+        { "keep", required_argument, NULL, KEEP },   { "make", no_argument, NULL, MAKE },
+        { "json", required_argument, NULL, JSON },   { NULL, 0, NULL, 0 },
     };
     struct options o = { .bin   = "build/bin",
                          .data  = "tests/data",
+                         .scene = "config/scenes/rig.yaml",
                          .cache = "build/blind",
                          .split = "dev",
                          .n     = 100,
@@ -87,6 +84,7 @@ static bool parse(const int argc, char *argv[], struct options *const options)
         case TABLE: o.table = optarg; break;
         case BIN: o.bin = optarg; break;
         case DATA: o.data = optarg; break;
+        case SCENE: o.scene = optarg; break;
         case CACHE: o.cache = optarg; break;
         case SPLIT: o.split = optarg; break;
         case SEED: o.seed = strtoull(optarg, NULL, 10); break;
@@ -392,7 +390,8 @@ static enum dig_status find_site(const struct options *const       o,
     if (getcwd(here, sizeof here) == NULL) {
         return dig_error_set(error, DIG_EIO, "here: %s", strerror(errno));
     }
-    (void)snprintf(scene, sizeof scene, "%s/config/scenes/rig.yaml", here);
+    (void)snprintf(scene, sizeof scene, "%s%s%s", o->scene[0] == '/' ? "" : here,
+                   o->scene[0] == '/' ? "" : "/", o->scene);
     site->scene   = scene;
     site->tooth_m = set->tooth_m;
     site->cache   = o->cache;

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Computes the digs of tests/data/blind: a minute and a half of one core a bed and three digs, 176 beds. Goes on where it was stopped.
-# usage, from the root of the sources: BIN=build/bin [JOBS=1] [ENGINE=kernel] tests/blind/pool/make.sh [judge]
+# usage, from the root of the sources: BIN=build/bin [JOBS=1] [ENGINE=kernel] tests/blind/pool/make.sh [judge | product]
 #   judge: what the judging split alone draws from, which a graphics card can dig whole (ENGINE=cuda)
+#   product: the digs of tests/data/product, in the open: 36 of a minute and a half of one core each
 set -eu
 here=$(dirname "$0")
 out=tests/data/blind
@@ -32,6 +33,13 @@ scene() {
 make_table() { # SCENE GRID TABLE
     "$bin/digtable" generate "$1" "$2" -o "$3" -j "${JOBS:-1}" --engine "${ENGINE:-kernel}"
 }
+if [ "${1:-}" = product ]; then
+    mkdir -p tests/data/product/blind
+    for grid in effects plain; do
+        ENGINE=${ENGINE:-single} make_table config/scenes/product.yaml "$here/product/$grid.yaml" "tests/data/product/blind/$grid.sqlite"
+    done
+    exit
+fi
 mkdir -p "$out/judge"
 if [ "${1:-}" != judge ]; then
     for grid in plain:plain effects:effects effects_2:effects effects_3:effects; do
