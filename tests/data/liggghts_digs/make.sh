@@ -7,6 +7,7 @@
 #   ./make.sh GRAVEL SEED scratch           a small scene, seconds: the phases' means and
 #                                           the spheres of the levelled bed on stdout, as small.csv has them
 # OUT=FOLDER: recordings go there. SCENE=product: config/scenes/product.yaml in place of the rig's, at two thirds of the time step.
+# YOUNG_PA=E: Young's modulus, otherwise the scene's, which in the product scene goes with the density.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 out=$(cd "${OUT:-$here}" && pwd)
@@ -40,6 +41,7 @@ fi
 # What a gravel is. Types 1 to 3 are grains (by size), 4 is the bucket; walls have type 1 unless said.
 friction=.5 rolling=.5 density=2500
 radii="$radius" shares="1" clump= slope_deg=0 rock=
+young=5e6
 bucket= # its friction and rolling friction; none: the grains' own
 normal=hooke roll=epsd2 wall_type=1
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
@@ -65,6 +67,10 @@ mu*_mur*_rho*) # a plain gravel by its parameters
 *) echo "gravel: $gravel, expected muF_murR_rhoD, muF_murR_rhoD_bucketB or one of the case above" >&2; exit 2 ;;
 esac
 
+[ "${SCENE:-rig}" != product ] || young=$(awk "BEGIN { print 5e6 * $density / 2500 }")
+young=${YOUNG_PA:-$young}
+# LIGGGHTS asks for leave below 5 MPa.
+soft=$(awk "BEGIN { if ($young < 5e6) print \"soft_particles yes\" }")
 law="$normal tangential history rolling_friction $roll"
 [ "$pull" = 0 ] || law="$normal tangential history cohesion sjkr rolling_friction $roll"
 
@@ -113,13 +119,14 @@ atom_style granular
 atom_modify map array
 boundary f $([ "$periodic" ] && echo p || echo f) f
 newton off
+$soft
 communicate single vel yes
 units si
 region reg block -0.01 $(if [ "$periodic" ]; then echo 0.41 -$half $half -0.035; else echo 0.32 -0.07 0.07 -0.01; fi) 0.6 units box
 create_box 4 reg
 neighbor 0.0015 bin
 neigh_modify delay 0 every 1 check yes
-fix m1 all property/global youngsModulus peratomtype 5e6 5e6 5e6 5e6
+fix m1 all property/global youngsModulus peratomtype $young $young $young $young
 fix m2 all property/global poissonsRatio peratomtype .2 .2 .2 .2
 fix m3 all property/global coefficientRestitution peratomtypepair $(pairs .2 .2)
 fix m4 all property/global coefficientFriction peratomtypepair $(pairs $friction ${bucket:-$friction})

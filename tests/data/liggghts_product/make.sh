@@ -1,17 +1,18 @@
 #!/bin/sh
-# Digs in the product scene with a steel bucket, computed with LIGGGHTS: three beds of four gravels, some twenty minutes of one
-# core a bed. What is here already is left; -n: only say what is missing.
+# Digs in the product scene with a steel bucket, computed with LIGGGHTS: three beds of four gravels, some twenty-five minutes of
+# one core a bed. What is here already is left; -n: only say what is missing.
 #   tests/data/liggghts_product/make.sh [-n]
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 for seed in 1 2 3; do
     for gravel in mu0.6_mur0.4_rho2200_bucket0.4 mu0.4_mur0.6_rho3000_bucket0.4 \
         smooth/mu0.5_mur0.6_rho2600_bucket0.2 smooth/mu0.6_mur0.4_rho2200_bucket0.2; do
+        case $gravel in *rho2600*) young=5e6 ;; *) young= ;; esac # the scene's is 5.2e6
         for trajectory in simpleA actual; do
             [ ! -e "$here/${gravel}_seed${seed}__$trajectory.csv" ] || continue
             echo "$gravel seed $seed $trajectory"
             [ "${1:-}" = -n ] ||
-                SCENE=product OUT="$(dirname "$here/$gravel")" "$here/../liggghts_digs/make.sh" "${gravel#*/}" $seed "$trajectory"
+                YOUNG_PA=$young SCENE=product OUT="$(dirname "$here/$gravel")" "$here/../liggghts_digs/make.sh" "${gravel#*/}" $seed "$trajectory"
         done
     done
 done
