@@ -322,7 +322,7 @@ bench-blind: ## How often digloop trace is right, on campaigns it never saw
 	$(Q)mkdir -p $(BUILD)/blind
 	$(Q)$(blind) --table $(BLIND_TABLE) --cache $(BUILD)/blind -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind.json $(BLIND_ARGS)
 
-bench-product: ## The same in the open, by tables/product.sqlite (BLIND_N=20: five minutes)
+bench-product: ## The same in the open, by tables/product.sqlite (BLIND_N=80: five minutes of two cores)
 	$(Q)mkdir -p $(BUILD)/blind_product
 	$(Q)$(blind) --table tables/product.sqlite --scene config/scenes/product.yaml --data tests/data/product \
 	    --cache $(BUILD)/blind_product -n $(BLIND_N) -j $(JOBS) --json $(BUILD)/blind_product.json $(BLIND_ARGS)
