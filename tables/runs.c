@@ -189,10 +189,17 @@ static enum dig_status derive_one(void *const context, const struct dig_run *con
 {
     const struct deriving *const       d    = context;
     const struct dig_table_head *const head = &d->store->head;
+    const size_t                       t    = run->origin.trajectory;
+    struct dig_trajectory              dug; // progress is a share of its path, not of the plain one
     double                             curve[DIG_CHANNELS][DIG_CURVE_POINTS];
-    const enum dig_status status = dig_derive_run(&head->trajectory[run->origin.trajectory],
-                                                  head->tooth_m, head->smooth_half_s, run->windows,
-                                                  run->first_s, run->step_s, run->value, curve);
+    struct dig_error                   why    = { "" };
+    enum dig_status                    status = dig_approach_apply(
+                           &head->trajectory[t], head->tooth_m, head->depth_m[t], &run->origin.approach, &dug, &why);
+    if (status != DIG_OK) {
+        return dig_error_set(error, status, "%s: run: %s", d->store->path, why.text);
+    }
+    status = dig_derive_run(&dug, head->tooth_m, head->smooth_half_s, run->windows, run->first_s,
+                            run->step_s, run->value, curve);
     if (status != DIG_OK) {
         return dig_error_set(error, status, "%s: no memory", d->store->path);
     }

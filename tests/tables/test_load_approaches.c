@@ -262,12 +262,51 @@ static void an_approach_out_of_range_is_refused_and_leaves_nothing(void **state)
     assert_int_equal(fixture_ask("range.sqlite", "SELECT count(*) FROM ground"), 0);
 }
 
+// Down 20 mm in half a second and 50 mm along in one; at depth 1.5 it is 30 mm down, so that the
+// way along begins at 3/8 of the path, not at 2/7. The moment is the share of the path done, by
+// steps of the pin.
+static void a_deep_dig_is_kept_over_its_own_path(void **state)
+{
+    (void)state;
+    struct dig_scene scene = fixture_scene();
+    scene.trajectories     = 1;
+    scene.trajectory[0]    = (struct dig_trajectory){
+           "dive", 0.0, 0.1,
+           0.175,  2,   { { "down", 0.5, 0.0, -0.04, 0.0 }, { "along", 1.0, 0.05, 0.0, 0.0 } }
+    };
+    struct dig_store *store = NULL;
+    struct dig_error  error = { "" };
+    assert_int_equal(dig_store_create(scratch_path("deep.sqlite"), &scene, &store, &error), DIG_OK);
+    static const double  depth[] = { 1.0, 1.5 };
+    struct dig_recording made    = fixture_recording(300, 0.0);
+    for (size_t d = 0; d < 2; d++) {
+        const double down_m = 0.02 * depth[d];
+        for (size_t i = 0; i < made.rows; i++) {
+            const double t_s  = made.row[i].t_s;
+            const double at_m = t_s < 0.5 ? t_s / 0.5 * down_m : down_m + 0.05 * (t_s - 0.5);
+            made.row[i].My_Nm = at_m / (down_m + 0.05);
+        }
+        struct dig_run_origin origin = fixture_origin(.3, .5, 2500.0, 0, 0);
+        origin.approach.depth        = depth[d];
+        assert_int_equal(dig_store_put(store, &origin, &made, &error), DIG_OK);
+    }
+    dig_store_close(store);
+    struct dig_curve_set *const set = fixture_load("deep.sqlite");
+    for (int k = 50; k < 200; k++) { // smoothing bends the ends
+        const double share = (double)k / (DIG_CURVE_POINTS - 1);
+        assert_close((double)set->curve[0].mean[0][k], share, 0.01);
+        assert_close((double)set->approaches->curve[0].mean[0][k], share, 0.01);
+    }
+    dig_curve_set_destroy(set);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, scratch_setup, scratch_teardown)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(turned_digs_stand_beside_the_plain_ones),
+        TEST(a_deep_dig_is_kept_over_its_own_path),
         TEST(a_table_without_them_has_no_such_set),
         TEST(a_run_is_there_in_its_own_approach_only),
         TEST(an_old_table_is_read_as_plain_and_left_alone),
