@@ -36,9 +36,9 @@ estimator/wrench       balance correction cylinder dynamics rates statics wrench
 estimator/track        inertia_error observation phase recorded_dig route settings track window | abort_detection
                        ending estimate followed motion
 estimator/approach     approach_error approach_fit approach_slots approaches interpolate live_recording
-                       observe_dig | approach_response approach_route approached
+                       observe_dig | approach_response approach_route approached laid
 estimator/effects      effect template
-estimator/match        gravel_match match pool prefilter | entry_scatter
+estimator/match        depth gravel_match match pool prefilter | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
 tables/schema          | canonical_scene schema seal
 tables                 derive export listed load load_effects merge queue scene store

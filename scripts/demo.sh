@@ -6,7 +6,7 @@ set -eu
 bin=${BIN:-build/bin} out=${OUT:-build/demo}
 machine=config/machines/zx200_trench.yaml
 reference=tests/data/liggghts_product
-gravel=${DIG_DEMO_GRAVEL:-mu0.6_mur0.4_rho2200_bucket0.4_seed2} truth=${DIG_DEMO_TRUTH:-.6,.4,2200}
+gravel=${DIG_DEMO_GRAVEL:-mu0.6_mur0.4_rho2200_bucket0.4_seed1} truth=${DIG_DEMO_TRUTH:-.6,.4,2200}
 simple=$reference/${gravel}__simpleA.csv actual=$reference/${gravel}__actual.csv
 speed=${DIG_DEMO_SPEED:-1}
 

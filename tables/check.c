@@ -60,13 +60,14 @@ static enum dig_status check_entry(struct dig_store *const         store,
     if (!same) {
         char how[DIG_APPROACH_TEXT_SIZE];
         dig_approach_text(&g->approach, how);
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: entry: friction %g, rolling %g, %g kg/m3%s%s on %s%s: of %d "
-                             "packings, differs from its %zu runs, expected their mean and spread; digtable "
-                             "merge into a new table makes them anew",
-                             store->path, g->gravel.value[0], g->gravel.value[1],
-                             g->gravel.value[2], g->effect[0] != '\0' ? " with " : "", g->effect,
-                             store->head.trajectory[trajectory].name, how, all->packings[at], runs);
+        return dig_error_set(
+            error, DIG_EINVAL,
+            "%s: entry: friction %g, rolling %g, %g kg/m3%s%s on %s%s: of %d "
+            "packings, differs from its %zu runs, expected their mean and spread; digtable "
+            "merge into a new table makes them anew",
+            store->path, g->gravel.value[0], g->gravel.value[1], g->gravel.value[2],
+            g->effect[0] != '\0' ? " with " : "", g->effect,
+            store->head.trajectory[trajectory].name, how, all->packings[at], runs);
     }
     return DIG_OK;
 }

@@ -34,6 +34,15 @@ static inline struct dig_scene fixture_scene(void)
     };
 }
 
+/// The same, but "pull" goes into the ground, as fast: it can be dug deeper.
+static inline struct dig_scene fixture_diving_scene(void)
+{
+    struct dig_scene scene              = fixture_scene();
+    scene.trajectory[0].phase[0].vx_mps = 0.04;
+    scene.trajectory[0].phase[0].vz_mps = -0.03;
+    return scene;
+}
+
 /// A dig of `rows` windows of 5 ms with the moment my + slope t, Fx = 2 My, Fz = -3 My, and 5 My of
 /// carried mass. The array
 /// is static: one recording at a time.
@@ -74,15 +83,21 @@ static inline struct dig_run_origin fixture_origin(const double friction, const 
     };
 }
 
-static inline struct dig_store *fixture_create(const char *const name)
+static inline struct dig_store *fixture_create_of(const char *const             name,
+                                                  const struct dig_scene *const scene)
 {
-    const struct dig_scene scene = fixture_scene();
-    struct dig_store      *store = NULL;
-    struct dig_error       error = { "" };
-    if (dig_store_create(scratch_path(name), &scene, &store, &error) != DIG_OK) {
+    struct dig_store *store = NULL;
+    struct dig_error  error = { "" };
+    if (dig_store_create(scratch_path(name), scene, &store, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
     return store;
+}
+
+static inline struct dig_store *fixture_create(const char *const name)
+{
+    const struct dig_scene scene = fixture_scene();
+    return fixture_create_of(name, &scene);
 }
 
 /// fixture_origin() with an effect.

@@ -1,5 +1,10 @@
 #include "closed_loop/recordings/observe_machine.h"
 
+#include "estimator/approach/approach_error.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/match/depth.h"
+#include "estimator/track/inertia_error.h"
+
 #include <assert.h>
 #include <stdlib.h>
 
@@ -26,13 +31,44 @@ static enum dig_status drive(struct dig_estimator *const               estimator
     for (size_t i = 0; i < recording->rows && status == DIG_OK; i++) {
         // A sample it cannot use is passed over, as in the daemon's tick.
         if (dig_estimator_step(estimator, &recording->row[i], &estimate) == DIG_OK &&
-            dig_estimator_take_observation(estimator, &observation) &&
-            observation.last - observation.first >= DIG_OBSERVE_LEAST_PATH) {
+            dig_estimator_take_observation(estimator, &observation)) {
             status = append(digs, &observation);
         }
     }
     digs->seen = estimate.dig_count;
     return status;
+}
+
+// Adds what the balance of forces leaves out, and tells the digs' depths; drops those off the
+// table.
+static enum dig_status tell_depths(const struct dig_machine *const   machine,
+                                   const struct dig_curve_set *const set, const double limit_m,
+                                   struct dig_observed_digs *const digs)
+{
+    const double              lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    void *const               memory = malloc(dig_depth_fit_size(set));
+    bool                      measured[DIG_TRAJECTORY_MAX] = { false };
+    size_t                    kept                         = 0;
+    struct dig_approach_error error[DIG_TRAJECTORY_MAX];
+    if (memory == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < digs->digs; i++) {
+        struct dig_observation *const dig = &digs->dig[i];
+        const size_t                  t   = (size_t)dig->trajectory;
+        if (!measured[t] && dig_approach_varies(set, t)) {
+            dig_approach_error_measure(set, t, &error[t]);
+            measured[t] = true;
+        }
+        dig_inertia_error_add(machine, lambda, dig);
+        if (dig_depth_fit(set, error, limit_m, memory, dig) == DIG_OK &&
+            dig->last - dig->first >= DIG_OBSERVE_LEAST_PATH) {
+            digs->dig[kept++] = *dig;
+        }
+    }
+    digs->digs = kept;
+    free(memory);
+    return DIG_OK;
 }
 
 static enum dig_status observe(const struct dig_machine *const           machine,
@@ -52,6 +88,9 @@ static enum dig_status observe(const struct dig_machine *const           machine
                              dig_status_str(status));
     }
     status = drive(estimator, recording, digs);
+    if (status == DIG_OK) {
+        status = tell_depths(machine, set, settings.path_limit_m, digs);
+    }
     if (status != DIG_OK) {
         return dig_error_set(error, status, "out of memory");
     }

@@ -180,7 +180,8 @@ static void measure_borrowed(const struct dig_curve_set *const set, const size_t
                                   &own)) {
                 continue;
             }
-            const bool any = dig_response_borrowed(set, e, trajectory, &nodes.approach[i], &others);
+            const bool any =
+                dig_response_borrowed(set, e, trajectory, &nodes.approach[i], NULL, &others);
             for (int c = 0; c < DIG_CHANNELS; c++) {
                 add(&whole, c, mean_square(own.change[c], nothing) - own.scatter2[c]);
                 if (any) {

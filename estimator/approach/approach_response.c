@@ -109,7 +109,8 @@ static double distance2(const struct dig_curve_set *const set, const size_t a, c
 
 bool dig_response_borrowed(const struct dig_curve_set *const set, const size_t entry,
                            const size_t trajectory, const struct dig_approach *const approach,
-                           struct dig_response *const response)
+                           const struct dig_response *const own[],
+                           struct dig_response *const       response)
 {
     const struct dig_approach plain = dig_approach_plain();
     struct dig_response       made;
@@ -120,26 +121,30 @@ bool dig_response_borrowed(const struct dig_curve_set *const set, const size_t e
     }
     // Its own plain curve, at the times of the trajectory dug so.
     made = (struct dig_response){ .inverse_packings = one.inverse_packings };
-    const struct dig_trajectory   dug = dig_response_trajectory(set, trajectory, approach);
-    const struct dig_curve *const own = &set->curve[entry * set->trajectories + trajectory];
+    const struct dig_trajectory   dug    = dig_response_trajectory(set, trajectory, approach);
+    const struct dig_curve *const itself = &set->curve[entry * set->trajectories + trajectory];
     double                        place[DIG_CURVE_POINTS];
     warp(&dug, &set->trajectory[trajectory], set->tooth_m, place);
     for (int c = 0; c < DIG_CHANNELS; c++) {
         made.rms[c] = one.rms[c];
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            made.plain[c][k] = dig_curve_at(own->mean[c], place[k]);
+            made.plain[c][k] = dig_curve_at(itself->mean[c], place[k]);
         }
     }
     for (size_t e = 0; e < set->entries; e++) {
-        if (e == entry || !dig_response_own(set, e, trajectory, approach, approach, &one)) {
+        const struct dig_response *lent = own != NULL ? own[e] : NULL;
+        if (own == NULL && dig_response_own(set, e, trajectory, approach, approach, &one)) {
+            lent = &one;
+        }
+        if (e == entry || lent == NULL) {
             continue;
         }
         const double weight = 1.0 / (distance2(set, entry, e) + near * near);
         whole += weight;
         for (int c = 0; c < DIG_CHANNELS; c++) {
-            made.scatter2[c] += weight * weight * one.scatter2[c];
+            made.scatter2[c] += weight * weight * lent->scatter2[c];
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                made.change[c][k] += weight * one.change[c][k];
+                made.change[c][k] += weight * lent->change[c][k];
             }
         }
     }

@@ -25,9 +25,11 @@ bool dig_response_own(const struct dig_curve_set *set, size_t entry, size_t traj
                       struct dig_response *response);
 
 /// By the digs of all other entries that reach so far, the nearest gravels most: 1 / distance^2 on
-/// axes from 0 to 1. False when there is none. O(entries).
+/// axes from 0 to 1. own: dig_response_own() of each entry along that approach, NULL where it is
+/// false; or NULL: computed here. False when there is none. O(entries).
 bool dig_response_borrowed(const struct dig_curve_set *set, size_t entry, size_t trajectory,
-                           const struct dig_approach *approach, struct dig_response *response);
+                           const struct dig_approach       *approach,
+                           const struct dig_response *const own[], struct dig_response *response);
 
 /// The trajectory of the set at an approach; the plain one where that cannot be.
 struct dig_trajectory dig_response_trajectory(const struct dig_curve_set *set, size_t trajectory,

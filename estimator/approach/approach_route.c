@@ -46,17 +46,19 @@ struct dig_route dig_approach_route_deep(const struct dig_curve_set *const set,
     return route;
 }
 
-double dig_approach_deepest(const struct dig_curve_set *const set, const size_t trajectory)
+struct dig_depths dig_approach_depths(const struct dig_curve_set *const set,
+                                      const size_t                      trajectory)
 {
     assert(set != NULL && trajectory < set->trajectories);
-    const struct dig_approach_set *const other   = set->approaches;
-    double                               deepest = 1.0;
+    const struct dig_approach_set *const other  = set->approaches;
+    struct dig_depths                    depths = { 1.0, 1.0 };
     for (size_t i = 0; other != NULL && i < other->entries; i++) {
         if (other->packings[i * other->trajectories + trajectory] > 0) {
-            deepest = fmax(deepest, other->entry[i].approach.depth);
+            depths.least = fmin(depths.least, other->entry[i].approach.depth);
+            depths.most  = fmax(depths.most, other->entry[i].approach.depth);
         }
     }
-    return deepest;
+    return depths;
 }
 
 // Path length from where the moment reaches the levels to the end of the first leg, m, at most that

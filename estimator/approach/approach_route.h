@@ -16,17 +16,20 @@ struct dig_route dig_approach_route(const struct dig_curve_set *set, size_t traj
 struct dig_route dig_approach_route_deep(const struct dig_curve_set *set, size_t trajectory,
                                          double depth);
 
-/// The depth of a dig, by where the soil began to resist: the path from there to the end of the
+/// A rough depth of a dig, by where the soil began to resist: the path from there to the end of the
 /// first leg, against that of the table's digs at several depths and attacks. The moment is over
 /// the path of dig_approach_route_deep() at deepest, measured from first to last. Resistance begins
 /// at a quarter and at a half of the moment just behind the first leg; the mean of the two counts,
 /// over all gravels of the table. 1 where the table was dug at one depth, or too little of the path
-/// was measured. Scatter of one dig makes it uncertain by about a tenth.
+/// was measured. Scatter of one dig makes it uncertain by about two thirds of a grain.
 double dig_approach_depth(const struct dig_curve_set *set, size_t trajectory, double deepest,
                           double attack_rad, double first, double last,
                           const double moment_Nm[DIG_CURVE_POINTS]);
 
-/// The greatest depth the table was dug at along the trajectory, at least 1.
-double dig_approach_deepest(const struct dig_curve_set *set, size_t trajectory);
+/// The depths the table was dug at along the trajectory, 1 among them.
+struct dig_depths {
+    double least, most;
+};
+struct dig_depths dig_approach_depths(const struct dig_curve_set *set, size_t trajectory);
 
 #endif // DIG_ESTIMATOR_APPROACH_APPROACH_ROUTE_H

@@ -49,6 +49,7 @@ int dig_approach_slot(const struct dig_curve_set *const set, const size_t trajec
         return nearest;
     }
     slots->slot[slots->slots] =
-        (struct dig_approached_slot){ trajectory, dig_approach_normalized(approach) };
+        (struct dig_approached_slot){ .trajectory = trajectory,
+                                      .approach   = dig_approach_normalized(approach) };
     return (int)slots->slots++;
 }

@@ -3,15 +3,17 @@
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_response.h"
 #include "estimator/approach/approaches.h"
+#include "estimator/approach/laid.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-// The parts of the memory, each aligned for its type.
+// The parts of the memory, each aligned for its type. The responses of the entries that were dug so
+// serve one slot after the other.
 struct layout {
-    size_t packings, curve, whole;
+    size_t packings, curve, own, response, whole;
 };
 
 static size_t up_to(const size_t offset, const size_t alignment)
@@ -19,12 +21,22 @@ static size_t up_to(const size_t offset, const size_t alignment)
     return (offset + alignment - 1) / alignment * alignment;
 }
 
+// At most so many entries were dug at more than the plain approach.
+static size_t dug_otherwise(const struct dig_curve_set *const set)
+{
+    const size_t ways = set->approaches != NULL ? set->approaches->entries : 0;
+    return ways < set->entries ? ways : set->entries;
+}
+
 static struct layout lay_out(const struct dig_curve_set *const set, const size_t slots)
 {
     const size_t  n = set->entries * slots;
     struct layout l = { .packings = up_to(sizeof(struct dig_curve_set), _Alignof(int)) };
     l.curve         = up_to(l.packings + n * sizeof(int), _Alignof(struct dig_curve));
-    l.whole         = l.curve + n * sizeof(struct dig_curve);
+    l.own = up_to(l.curve + n * sizeof(struct dig_curve), _Alignof(struct dig_response *));
+    l.response =
+        up_to(l.own + set->entries * sizeof(struct dig_response *), _Alignof(struct dig_response));
+    l.whole = l.response + dug_otherwise(set) * sizeof(struct dig_response);
     return l;
 }
 
@@ -90,30 +102,84 @@ static int change(const struct dig_response *const response, const struct dig_cu
     return packings > 1.0 ? (int)packings : 1;
 }
 
+// The responses of all entries that were dug so far; NULL of the others.
+static void respond(const struct dig_curve_set *const       set,
+                    const struct dig_approached_slot *const slot, struct dig_response response[],
+                    const struct dig_response *own[])
+{
+    size_t next = 0;
+    for (size_t e = 0; e < set->entries; e++) {
+        struct dig_nodes nodes;
+        dig_nodes_of(set, e, slot->trajectory, &nodes);
+        own[e] = NULL;
+        if (nodes.nodes > 1 && dig_response_own(set, e, slot->trajectory, &slot->approach,
+                                                &slot->approach, &response[next])) {
+            own[e] = &response[next++];
+        }
+    }
+}
+
 static void fill(const struct dig_curve_set *const       set,
                  const struct dig_approached_slot *const slot,
                  const struct dig_approach_error *const error, const size_t entry,
-                 int *const packings, struct dig_curve *const curve)
+                 const struct dig_response *const own[], int *const packings,
+                 struct dig_curve *const curve)
 {
     const struct dig_curve *const plain = &set->curve[entry * set->trajectories + slot->trajectory];
-    struct dig_response           response;
+    const struct dig_response    *response = own[entry];
+    struct dig_response           borrowed;
     double                        error2[DIG_CHANNELS];
-    *packings = set->packings[entry * set->trajectories + slot->trajectory];
-    if (dig_approach_is_plain(&slot->approach)) {
-        *curve = *plain;
-        return;
+    if (response == NULL &&
+        dig_response_borrowed(set, entry, slot->trajectory, &slot->approach, own, &borrowed)) {
+        response = &borrowed;
     }
-    const bool own =
-        dig_response_own(set, entry, slot->trajectory, &slot->approach, &slot->approach, &response);
-    if (!own && !dig_response_borrowed(set, entry, slot->trajectory, &slot->approach, &response)) {
+    if (response == NULL) {
         *packings = 0;
         *curve    = *plain;
         return;
     }
     for (int c = 0; c < DIG_CHANNELS; c++) {
-        error2[c] = own ? bent2(set, entry, slot, error, c) : lent2(set, slot, error, c);
+        error2[c] =
+            response == &borrowed ? lent2(set, slot, error, c) : bent2(set, entry, slot, error, c);
     }
-    *packings = change(&response, plain, error2, curve);
+    *packings = change(response, plain, error2, curve);
+}
+
+static void fill_plain(const struct dig_curve_set *const set, const size_t trajectory,
+                       const size_t entry, int *const packings, struct dig_curve *const curve)
+{
+    const size_t at = entry * set->trajectories + trajectory;
+    *packings       = set->packings[at];
+    *curve          = set->curve[at];
+}
+
+// The curves of one slot, each the s-th of its entry.
+static void fill_slot(const struct dig_curve_set *const       set,
+                      const struct dig_approached_slot *const slot,
+                      const struct dig_approach_error *const error, const size_t s,
+                      struct dig_response response[], const struct dig_response *own[],
+                      struct dig_curve_set *const made)
+{
+    const double over_depth = slot->over_depth > 0.0 ? slot->over_depth : slot->approach.depth;
+    const struct dig_approach over  = { over_depth, slot->approach.attack_rad };
+    const bool                plain = dig_approach_is_plain(&slot->approach);
+    double                    place[DIG_CURVE_POINTS];
+    made->trajectory[s] = dig_response_trajectory(set, slot->trajectory, &over);
+    dig_laid_places(set, slot->trajectory, over_depth, slot->approach.depth, place);
+    if (!plain) {
+        respond(set, slot, response, own);
+    }
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t at = e * made->trajectories + s;
+        if (plain) {
+            fill_plain(set, slot->trajectory, e, &made->packings[at], &made->curve[at]);
+        } else {
+            fill(set, slot, error, e, own, &made->packings[at], &made->curve[at]);
+        }
+        if (slot->over_depth > 0.0) {
+            dig_laid_curve(place, &made->curve[at]);
+        }
+    }
 }
 
 const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *const       set,
@@ -124,29 +190,28 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
 {
     assert(set != NULL && slot != NULL && memory != NULL && slots >= 1 &&
            slots <= DIG_TRAJECTORY_MAX);
-    const struct layout         l    = lay_out(set, slots);
-    struct dig_curve_set *const made = memory;
-    *made                            = *set;
-    made->approaches                 = NULL;
-    made->covariance                 = NULL;
-    made->trajectories               = slots;
-    made->packings                   = (int *)(void *)((uint8_t *)memory + l.packings);
-    made->curve                      = (struct dig_curve *)(void *)((uint8_t *)memory + l.curve);
+    uint8_t *const              at             = memory;
+    const struct layout         l              = lay_out(set, slots);
+    struct dig_curve_set *const made           = memory;
+    *made                                      = *set;
+    made->approaches                           = NULL;
+    made->covariance                           = NULL;
+    made->trajectories                         = slots;
+    made->packings                             = (int *)(void *)(at + l.packings);
+    made->curve                                = (struct dig_curve *)(void *)(at + l.curve);
+    const struct dig_response **const own      = (const struct dig_response **)(void *)(at + l.own);
+    struct dig_response *const        response = (struct dig_response *)(void *)(at + l.response);
     for (size_t s = 0; s < slots; s++) {
         assert(slot[s].trajectory < set->trajectories);
-        struct dig_approached_slot wanted = slot[s];
-        struct dig_approach_error  own    = { .farthest_m = 0.0 };
-        wanted.approach                   = dig_approach_normalized(&wanted.approach);
-        made->trajectory[s] = dig_response_trajectory(set, wanted.trajectory, &wanted.approach);
+        struct dig_approached_slot wanted   = slot[s];
+        struct dig_approach_error  measured = { .farthest_m = 0.0 };
+        wanted.approach                     = dig_approach_normalized(&wanted.approach);
         if (error != NULL) {
-            own = error[wanted.trajectory];
+            measured = error[wanted.trajectory];
         } else if (!dig_approach_is_plain(&wanted.approach)) {
-            dig_approach_error_measure(set, wanted.trajectory, &own);
+            dig_approach_error_measure(set, wanted.trajectory, &measured);
         }
-        for (size_t e = 0; e < set->entries; e++) {
-            fill(set, &wanted, &own, e, &made->packings[e * slots + s],
-                 &made->curve[e * slots + s]);
-        }
+        fill_slot(set, &wanted, &measured, s, response, own, made);
     }
     return made;
 }

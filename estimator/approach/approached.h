@@ -19,17 +19,19 @@
 /// One trajectory of the table made: one of the set's, dug so.
 struct dig_approached_slot {
     size_t              trajectory;
-    struct dig_approach approach; // in the hull: dig_approach_clamp()
+    struct dig_approach approach;   // in the hull: dig_approach_clamp()
+    double              over_depth; // its curves are laid over the path at this depth
+                                    // (estimator/approach/laid.h); 0: over their own
 };
 
-/// Bytes of the memory dig_approached_make() wants: 8 kB an entry and slot.
+/// Bytes of the memory dig_approached_make() wants: 8 kB an entry and slot, 17 kB an entry dug at
+/// other approaches.
 size_t dig_approached_size(const struct dig_curve_set *set, size_t slots);
 
 /// The set with these slots as its trajectories, 1 to DIG_TRAJECTORY_MAX, in memory (aligned as
 /// malloc does). Gravels, entries and grid are the set's own, which must outlive it. A slot that is
 /// plain has the set's curves bit by bit. An entry for which neither its own nor others' digs reach
-/// lacks the trajectory. About 0.1 ms an entry and slot; where gravels borrow, that times those
-/// that lend.
+/// lacks the trajectory. About 0.1 ms an entry and slot.
 /// error: of each of the set's trajectories, as dig_approach_error_measure() has it; NULL: measured
 /// here, which takes longer than all else.
 const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *set, size_t slots,

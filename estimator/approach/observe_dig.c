@@ -2,7 +2,6 @@
 
 #include "estimator/approach/approach_route.h"
 #include "estimator/approach/approach_slots.h"
-#include "estimator/approach/approaches.h"
 #include "estimator/track/abort_detection.h"
 #include "estimator/track/ending.h"
 #include "estimator/track/followed.h"
@@ -14,9 +13,9 @@
 // The soil is searched from deeper than the table was dug by this factor, to detect digs off it.
 static const double probe_deeper = 1.5;
 
-// Observes a dig whose trajectory the table has at several depths and attacks. The attack is the
-// track's turn; the depth follows from where the soil began to resist, searched along the path of
-// the deepest dig. What lies beyond the table counts as distance.
+// Observes a dig whose trajectory the table has at several depths and attacks, over the path of one
+// deeper than any. The attack is the track's turn; where the soil began to resist tells roughly how
+// deep it was.
 static enum dig_status observe_as_dug(const struct dig_curve_set *const set, const double limit_m,
                                       const struct dig_track *const  track,
                                       struct dig_recorded_dig *const recording,
@@ -24,31 +23,18 @@ static enum dig_status observe_as_dug(const struct dig_curve_set *const set, con
 {
     const size_t t = (size_t)out->trajectory;
     const double deepest =
-        fmin(probe_deeper * dig_approach_deepest(set, t), DIG_APPROACH_DEPTH_MOST);
-    const struct dig_route deep = dig_approach_route_deep(set, t, deepest);
-    struct dig_observation seen = *out;
-    enum dig_status status = dig_window_observe(&recording->window, &deep, track, 2.0 * limit_m,
-                                                set->smooth_half_s, &seen);
-    if (status != DIG_OK) {
-        return status;
-    }
-    const struct dig_approach made = {
-        .depth      = dig_approach_depth(set, t, deepest, track->turn_m / set->tooth_m, seen.first,
-                                         seen.last, seen.moment_Nm),
-        .attack_rad = track->turn_m / set->tooth_m,
-    };
-    seen.made                       = made;
-    const double           beyond_m = dig_approach_clamp(set, t, &made, &seen.approach);
-    const struct dig_route route    = dig_approach_route_deep(set, t, seen.approach.depth);
-    const double           off_m    = hypot(track->rms_m, beyond_m);
-    if (!(off_m <= limit_m)) {
-        return DIG_ENOMATCH;
-    }
-    status = dig_window_observe(&recording->window, &route, track, 2.0 * limit_m,
-                                set->smooth_half_s, &seen);
+        fmin(probe_deeper * dig_approach_depths(set, t).most, DIG_APPROACH_DEPTH_MOST);
+    const double           attack_rad = track->turn_m / set->tooth_m;
+    const struct dig_route deep       = dig_approach_route_deep(set, t, deepest);
+    const enum dig_status  status     = dig_window_observe(&recording->window, &deep, track,
+                                                           2.0 * limit_m, set->smooth_half_s, out);
     if (status == DIG_OK) {
-        seen.off_path_m = off_m;
-        *out            = seen;
+        out->approach = (struct dig_approach){ deepest, attack_rad };
+        out->made     = (struct dig_approach){
+                .depth      = dig_approach_depth(set, t, deepest, attack_rad, out->first, out->last,
+                                                 out->moment_Nm),
+                .attack_rad = attack_rad,
+        };
     }
     return status;
 }

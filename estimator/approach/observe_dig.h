@@ -12,8 +12,10 @@
 #include <stdbool.h>
 
 /// Fits the path to every trajectory of the set, and observes the moment along the one it was.
-/// DIG_ENOMATCH: it was none of them, or too little of one. Sorts the recording's samples; one to
-/// two milliseconds.
+/// Where the table holds several depths of it, over the path at a depth beyond them all, which is
+/// then `approach`, with a rough depth in `made`: dig_depth_fit() (estimator/match/depth.h) tells
+/// the depth. DIG_ENOMATCH: it was none of them, or too little of one. Sorts the recording's
+/// samples; one to two milliseconds.
 DIG_MUST_CHECK enum dig_status
 dig_recorded_dig_observe(const struct dig_curve_set          *set,
                          const struct dig_estimator_settings *settings,

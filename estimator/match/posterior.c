@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 enum { FINE = 25, FINE_DENSITY = 13, GRID_MAX = FINE * FINE * FINE_DENSITY };
+enum { COARSE = 9, COARSE_DENSITY = 7 };
 
 // A point whose log-likelihood by the outlines is this far below the greatest is skipped. All
 // skipped points together weigh less than a thousandth of the likeliest.
@@ -36,9 +37,9 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
     return (miss2 / errors - 1.0) * sqrt(0.5 * errors);
 }
 
-// The fine grid: points are centres of equal intervals of each axis's position. What belongs to a
+// A grid: points are centres of equal intervals of each axis's position. What belongs to a
 // point depends on single axes, and is computed once for each of their values.
-struct fine {
+struct grid {
     size_t                   count[DIG_AXES];
     size_t                   all;
     double                   value[DIG_AXES][FINE];
@@ -46,25 +47,26 @@ struct fine {
 };
 
 // DIG_ENOMATCH when an axis has no points.
-static enum dig_status make_fine(const struct dig_curve_set *const set, struct fine *const fine)
+static enum dig_status make_grid(const struct dig_curve_set *const set, const size_t most_friction,
+                                 const size_t most_density, struct grid *const grid)
 {
-    fine->all = 1;
+    grid->all = 1;
     for (int a = 0; a < DIG_AXES; a++) {
         const enum dig_axis axis = (enum dig_axis)a;
-        const size_t        most = a == DIG_AXIS_DENSITY_kgpm3 ? FINE_DENSITY : FINE;
+        const size_t        most = a == DIG_AXIS_DENSITY_kgpm3 ? most_density : most_friction;
         if (set->axis_count[a] == 0) {
             return DIG_ENOMATCH;
         }
-        fine->count[a] = set->axis_count[a] > 1 ? most : 1;
-        fine->all *= fine->count[a];
-        for (size_t i = 0; i < fine->count[a]; i++) {
+        grid->count[a] = set->axis_count[a] > 1 ? most : 1;
+        grid->all *= grid->count[a];
+        for (size_t i = 0; i < grid->count[a]; i++) {
             const double value =
-                dig_axis_value(set, axis, ((double)i + 0.5) / (double)fine->count[a]);
-            const enum dig_status status = dig_axis_locate(set, axis, value, &fine->place[a][i]);
+                dig_axis_value(set, axis, ((double)i + 0.5) / (double)grid->count[a]);
+            const enum dig_status status = dig_axis_locate(set, axis, value, &grid->place[a][i]);
             if (status != DIG_OK) {
                 return status;
             }
-            fine->value[a][i] = value;
+            grid->value[a][i] = value;
         }
     }
     return DIG_OK;
@@ -75,36 +77,36 @@ struct indices {
     size_t on[DIG_AXES];
 };
 
-static struct indices indices_of(const struct fine *const fine, const size_t point)
+static struct indices indices_of(const struct grid *const grid, const size_t point)
 {
     struct indices at;
     size_t         rest = point;
     for (int a = DIG_AXES - 1; a >= 0; a--) {
-        at.on[a] = rest % fine->count[a];
-        rest /= fine->count[a];
+        at.on[a] = rest % grid->count[a];
+        rest /= grid->count[a];
     }
     return at;
 }
 
-static struct dig_gravel gravel_at(const struct fine *const fine, const size_t point)
+static struct dig_gravel gravel_at(const struct grid *const grid, const size_t point)
 {
-    const struct indices at = indices_of(fine, point);
+    const struct indices at = indices_of(grid, point);
     struct dig_gravel    gravel;
     for (int a = 0; a < DIG_AXES; a++) {
-        gravel.value[a] = fine->value[a][at.on[a]];
+        gravel.value[a] = grid->value[a][at.on[a]];
     }
     return gravel;
 }
 
 // Of all digs at one point; -infinity where the table has no curve.
 static double log_likelihood_at(const struct dig_curve_set *const set,
-                                const struct fine *const fine, const size_t point,
+                                const struct grid *const grid, const size_t point,
                                 const size_t groups, const struct dig_likelihood l[])
 {
-    const struct indices     at = indices_of(fine, point);
+    const struct indices     at = indices_of(grid, point);
     struct dig_axis_interval place[DIG_AXES];
     for (int a = 0; a < DIG_AXES; a++) {
-        place[a] = fine->place[a][at.on[a]];
+        place[a] = grid->place[a][at.on[a]];
     }
     double sum = 0.0;
     for (size_t g = 0; g < groups; g++) {
@@ -119,12 +121,12 @@ static double log_likelihood_at(const struct dig_curve_set *const set,
 
 // The gravel of the most probable point; what piles up at an end of an axis belongs there.
 static struct dig_gravel mode_at(const struct dig_curve_set *const set,
-                                 const struct fine *const fine, const size_t point)
+                                 const struct grid *const grid, const size_t point)
 {
-    const struct indices at     = indices_of(fine, point);
-    struct dig_gravel    gravel = gravel_at(fine, point);
+    const struct indices at     = indices_of(grid, point);
+    struct dig_gravel    gravel = gravel_at(grid, point);
     for (int a = 0; a < DIG_AXES; a++) {
-        if (at.on[a] == 0 || at.on[a] + 1 == fine->count[a]) {
+        if (at.on[a] == 0 || at.on[a] + 1 == grid->count[a]) {
             gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, at.on[a] == 0 ? 0.0 : 1.0);
         }
     }
@@ -136,11 +138,11 @@ struct marginal {
     double weight[DIG_AXES][FINE];
 };
 
-static struct marginal marginal_of(const struct fine *const fine, const double weight[])
+static struct marginal marginal_of(const struct grid *const grid, const double weight[])
 {
     struct marginal m = { { { 0.0 } } };
-    for (size_t i = 0; i < fine->all; i++) {
-        const struct indices at = indices_of(fine, i);
+    for (size_t i = 0; i < grid->all; i++) {
+        const struct indices at = indices_of(grid, i);
         for (int a = 0; a < DIG_AXES; a++) {
             m.weight[a][at.on[a]] += weight[i];
         }
@@ -162,17 +164,17 @@ static double quantile(const size_t count, const double weight[], const double p
 }
 
 // Gravels at equal steps of the cumulative weight: each stands for as much of the posterior.
-static void draw_samples(const struct fine *const fine, const double weight[],
+static void draw_samples(const struct grid *const grid, const double weight[],
                          struct dig_match *const match)
 {
     double sum = 0.0;
     size_t i   = 0;
     for (size_t s = 0; s < DIG_MATCH_SAMPLES; s++) {
         const double at = ((double)s + 0.5) / DIG_MATCH_SAMPLES;
-        while (i + 1 < fine->all && sum + weight[i] < at) {
+        while (i + 1 < grid->all && sum + weight[i] < at) {
             sum += weight[i++];
         }
-        match->sample[s] = gravel_at(fine, i);
+        match->sample[s] = gravel_at(grid, i);
     }
     match->samples = DIG_MATCH_SAMPLES;
 }
@@ -180,7 +182,7 @@ static void draw_samples(const struct fine *const fine, const double weight[],
 // Marks the points to evaluate by 0, others by -infinity; all without a prefilter.
 static void mark_likely(const struct dig_curve_set *const set,
                         const struct dig_prefilter *const prefilter,
-                        const struct dig_pool_sums *const sums, const struct fine *const fine,
+                        const struct dig_pool_sums *const sums, const struct grid *const grid,
                         struct dig_likelihood l[], double weight[])
 {
     bool rough = prefilter != NULL;
@@ -192,13 +194,38 @@ static void mark_likely(const struct dig_curve_set *const set,
     }
     rough       = rough && dear;
     double most = -INFINITY;
-    for (size_t i = 0; i < fine->all; i++) {
-        weight[i] = rough ? log_likelihood_at(set, fine, i, sums->groups, l) : 0.0;
+    for (size_t i = 0; i < grid->all; i++) {
+        weight[i] = rough ? log_likelihood_at(set, grid, i, sums->groups, l) : 0.0;
         most      = fmax(most, weight[i]);
     }
-    for (size_t i = 0; i < fine->all; i++) {
+    for (size_t i = 0; i < grid->all; i++) {
         weight[i] = weight[i] < most - unlikely ? -(double)INFINITY : 0.0;
     }
+}
+
+double dig_posterior_evidence(const struct dig_curve_set *const set,
+                              const struct dig_pool_sums *const sums)
+{
+    assert(set != NULL && sums != NULL);
+    struct grid           coarse;
+    struct dig_likelihood l[DIG_TRAJECTORY_MAX];
+    double                log_of[COARSE * COARSE * COARSE_DENSITY];
+    double                most = -INFINITY;
+    if (make_grid(set, COARSE, COARSE_DENSITY, &coarse) != DIG_OK) {
+        return -INFINITY;
+    }
+    for (size_t g = 0; g < sums->groups; g++) {
+        dig_likelihood_make(set, NULL, &sums->group[g], &l[g]);
+    }
+    for (size_t i = 0; i < coarse.all; i++) {
+        log_of[i] = log_likelihood_at(set, &coarse, i, sums->groups, l);
+        most      = fmax(most, log_of[i]);
+    }
+    double sum = 0.0;
+    for (size_t i = 0; isfinite(most) && i < coarse.all; i++) {
+        sum += exp(log_of[i] - most);
+    }
+    return most + log(sum / (double)coarse.all);
 }
 
 enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
@@ -207,21 +234,21 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
                                    struct dig_match *const           match)
 {
     assert(set != NULL && sums != NULL && match != NULL);
-    struct fine fine;
-    if (make_fine(set, &fine) != DIG_OK) {
+    struct grid grid;
+    if (make_grid(set, FINE, FINE_DENSITY, &grid) != DIG_OK) {
         return DIG_ENOMATCH;
     }
     struct dig_likelihood l[DIG_TRAJECTORY_MAX];
     double                weight[GRID_MAX];
-    mark_likely(set, prefilter, sums, &fine, l, weight);
+    mark_likely(set, prefilter, sums, &grid, l, weight);
 
     for (size_t g = 0; g < sums->groups; g++) {
         dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
     }
     double most = -INFINITY;
-    for (size_t i = 0; i < fine.all; i++) {
+    for (size_t i = 0; i < grid.all; i++) {
         if (!(weight[i] < 0.0)) {
-            weight[i] = log_likelihood_at(set, &fine, i, sums->groups, l);
+            weight[i] = log_likelihood_at(set, &grid, i, sums->groups, l);
         }
         most = fmax(most, weight[i]);
     }
@@ -230,32 +257,32 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     }
 
     size_t mode = 0;
-    for (size_t i = 1; i < fine.all; i++) {
+    for (size_t i = 1; i < grid.all; i++) {
         mode = weight[i] > weight[mode] ? i : mode;
     }
     double sum = 0.0;
-    for (size_t i = 0; i < fine.all; i++) {
+    for (size_t i = 0; i < grid.all; i++) {
         weight[i] = exp(weight[i] - most);
         sum += weight[i];
     }
     struct dig_gravel mean = { { 0 } };
-    for (size_t i = 0; i < fine.all; i++) {
+    for (size_t i = 0; i < grid.all; i++) {
         weight[i] /= sum;
-        const struct dig_gravel gravel = gravel_at(&fine, i);
+        const struct dig_gravel gravel = gravel_at(&grid, i);
         for (int a = 0; a < DIG_AXES; a++) {
             mean.value[a] += weight[i] * gravel.value[a];
         }
     }
 
-    const struct marginal m = marginal_of(&fine, weight);
+    const struct marginal m = marginal_of(&grid, weight);
     match->mean             = mean;
-    match->mode             = mode_at(set, &fine, mode);
+    match->mode             = mode_at(set, &grid, mode);
     for (int a = 0; a < DIG_AXES; a++) {
         const enum dig_axis axis = (enum dig_axis)a;
-        match->low.value[a] = dig_axis_value(set, axis, quantile(fine.count[a], m.weight[a], 0.05));
+        match->low.value[a] = dig_axis_value(set, axis, quantile(grid.count[a], m.weight[a], 0.05));
         match->high.value[a] =
-            dig_axis_value(set, axis, quantile(fine.count[a], m.weight[a], 0.95));
+            dig_axis_value(set, axis, quantile(grid.count[a], m.weight[a], 0.95));
     }
-    draw_samples(&fine, weight, match);
+    draw_samples(&grid, weight, match);
     return DIG_OK;
 }

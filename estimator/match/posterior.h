@@ -63,6 +63,10 @@
 double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
                             const struct dig_pool_sums *sums, const struct dig_gravel *gravel);
 
+/// Logarithm of the digs' mean likelihood over the prior, on a coarse grid, up to a constant;
+/// -INFINITY where the table has no complete cell. Some 600 evaluations a trajectory.
+double dig_posterior_evidence(const struct dig_curve_set *set, const struct dig_pool_sums *sums);
+
 /// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
 /// complete cell for the trajectories that were dug; then *match is unchanged. About 8000
 /// evaluations a trajectory; 220 kB of stack. A prefilter of the set skips those whose outlines are

@@ -89,11 +89,14 @@ static enum dig_status find_nearest_of_pool(struct dig_fit *const fit, struct di
     return find_nearest(fit, 1, pool->dig, match);
 }
 
-static void add_inertia_error(const struct dig_fit *const fit, struct dig_observation *const dig)
+// What is done to a dig as soon as it was observed. False where the table does not go so deep.
+static bool complete(struct dig_fit *const fit, struct dig_observation *const dig)
 {
     if (fit->machine != NULL) {
         dig_inertia_error_add(fit->machine, fit->table.lambda, dig);
     }
+    return dig_matcher_fit_depth(&fit->table.matcher, fit->table.set,
+                                 fit->config->estimator.path_limit_m, dig) == DIG_OK;
 }
 
 static void clear_provisional(struct dig_fit *const fit)
@@ -175,12 +178,14 @@ static void observe_early(struct dig_fit *const fit)
     struct dig_early_match *const     early = fit->early;
     const struct dig_curve_set *const set   = fit->table.set;
     struct dig_observation            dig;
-    const bool observed = dig_early_match_observe(early, set, fit->table.lambda, fit->config, &dig);
-    if (observed) {
-        add_inertia_error(fit, &dig);
-        if (identifies(fit, dig.trajectory)) {
-            match_provisionally(fit, &dig);
-        }
+    bool observed = dig_early_match_observe(early, set, fit->table.lambda, fit->config, &dig);
+    if (observed && !complete(fit, &dig)) {
+        early->off_table_trajectory = dig.trajectory;
+        observed                    = false;
+    }
+    observed = observed && dig.last - dig.first >= fit->config->match_early_path;
+    if (observed && identifies(fit, dig.trajectory)) {
+        match_provisionally(fit, &dig);
     }
     const struct dig_gravel_track *const track =
         fit->track.valid ? &fit->track : &early->provisional;
@@ -289,8 +294,8 @@ static bool take_finished(struct dig_fit *const fit)
     }
     struct dig_observation dig;
     if (dig_recorded_dig_observe(fit->table.set, &fit->config->estimator, recording, &dig) ==
-        DIG_OK) {
-        add_inertia_error(fit, &dig);
+            DIG_OK &&
+        complete(fit, &dig)) {
         dig_fit_take(fit, &dig);
     } else {
         count_unobserved(fit, recording);

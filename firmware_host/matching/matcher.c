@@ -1,6 +1,7 @@
 #include "firmware_host/matching/matcher.h"
 
 #include "estimator/approach/approach_slots.h"
+#include "estimator/match/depth.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -33,6 +34,16 @@ static bool make_room(struct dig_matcher *const matcher, const size_t bytes)
         matcher->bytes  = bytes;
     }
     return true;
+}
+
+enum dig_status dig_matcher_fit_depth(struct dig_matcher *const         matcher,
+                                      const struct dig_curve_set *const set, const double limit_m,
+                                      struct dig_observation *const dig)
+{
+    assert(matcher != NULL && dig != NULL);
+    return make_room(matcher, dig_depth_fit_size(set))
+               ? dig_depth_fit(set, matcher->error, limit_m, matcher->memory, dig)
+               : DIG_ENOMEM;
 }
 
 // The table at the depths and attacks of the digs; matcher->dig holds the digs along its

@@ -28,6 +28,12 @@ struct dig_matcher {
 /// set must outlive it, or dig_matcher_finish() comes first. A few microseconds a curve.
 void dig_matcher_set_table(struct dig_matcher *matcher, const struct dig_curve_set *set);
 
+/// Tells the depth of a dig as it was observed: dig_depth_fit() in the matcher's memory.
+/// DIG_ENOMEM, too.
+DIG_MUST_CHECK enum dig_status dig_matcher_fit_depth(struct dig_matcher         *matcher,
+                                                     const struct dig_curve_set *set,
+                                                     double limit_m, struct dig_observation *dig);
+
 /// As dig_match_nearest() and dig_fit_refine() of the matcher's table (without a prefilter, of
 /// any); each dig with the curves of its own depth and attack. DIG_ENOMEM: no memory for these.
 DIG_MUST_CHECK enum dig_status dig_matcher_nearest(struct dig_matcher         *matcher,

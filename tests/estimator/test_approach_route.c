@@ -78,9 +78,13 @@ static void a_track_holds_for_the_route_at_another_depth(void **state)
         assert_close(deep.corner[i].turn_m, plain.corner[i].turn_m, 1e-12);
     }
     assert_close(deep.corner[0].z_m - plain.corner[0].z_m, 0.2 * APPROACH_m, 1e-9);
-    assert_close(dig_approach_deepest(&table.cube.set, 1), 1.2, 0.0);
-    table.cube.set.approaches = NULL;
-    assert_close(dig_approach_deepest(&table.cube.set, 1), 1.0, 0.0);
+    const struct dig_depths depths = dig_approach_depths(&table.cube.set, 1);
+    assert_close(depths.least, 0.8, 0.0);
+    assert_close(depths.most, 1.2, 0.0);
+    table.cube.set.approaches          = NULL;
+    const struct dig_depths plain_only = dig_approach_depths(&table.cube.set, 1);
+    assert_close(plain_only.least, 1.0, 0.0);
+    assert_close(plain_only.most, 1.0, 0.0);
 }
 
 // The moment of a dig at `made` over the way of the deepest, the last corners together.

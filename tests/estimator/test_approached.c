@@ -42,7 +42,7 @@ static void *memory;
 static const struct dig_curve_set *make(const size_t trajectory, const double depth,
                                         const double attack_deg)
 {
-    const struct dig_approached_slot slot = { trajectory, { depth, attack_deg * DEG } };
+    const struct dig_approached_slot slot = { trajectory, { depth, attack_deg * DEG }, 0.0 };
     free(memory);
     memory = malloc(dig_approached_size(&table.cube.set, 1));
     assert_non_null(memory);
@@ -247,7 +247,7 @@ static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         seen.moment_Nm[k] = (double)truth.mean[0][k];
     }
-    const struct dig_approached_slot slot[] = { { 0, approach }, { 1, approach } };
+    const struct dig_approached_slot slot[] = { { 0, approach, 0.0 }, { 1, approach, 0.0 } };
     free(memory);
     memory = malloc(dig_approached_size(&table.cube.set, 2));
     const struct dig_curve_set *const made =

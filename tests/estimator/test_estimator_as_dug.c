@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/live_recording.h"
+#include "estimator/match/depth.h"
 #include "tests/testlib.h"
 #include "tests/wires.h"
 
@@ -62,7 +63,18 @@ static enum dig_status dig(struct bench *const b, const size_t t, const struct d
         tell(b, dig_trajectory_pose(&dug, t_s), approach_moment_Nm(3, t, t_s, factor),
              t_s < 0.1 ? DIG_PHASE_CONTACT : DIG_PHASE_DIG);
     }
-    return dig_live_recording_observe(&b->table.cube.set, &settings, &b->shadow, &b->scratch, seen);
+    const struct dig_curve_set *const set = &b->table.cube.set;
+    enum dig_status                   status =
+        dig_live_recording_observe(set, &settings, &b->shadow, &b->scratch, seen);
+    if (status == DIG_OK) {
+        struct dig_approach_error error[2];
+        void *const               memory = malloc(dig_depth_fit_size(set));
+        dig_approach_error_measure(set, 0, &error[0]);
+        dig_approach_error_measure(set, 1, &error[1]);
+        status = dig_depth_fit(set, error, settings.path_limit_m, memory, seen);
+        free(memory);
+    }
+    return status;
 }
 
 static void depth_and_attack_are_told_where_the_table_was_dug_so(void **state)

@@ -24,7 +24,8 @@ static void put(struct dig_store *const store, const double friction,
 // Two gravels that resist alike all along, dug plainly and in one other way each.
 static struct dig_curve_set *make_table(const char *const name)
 {
-    struct dig_store *const store = fixture_create(name);
+    const struct dig_scene  scene = fixture_diving_scene();
+    struct dig_store *const store = fixture_create_of(name, &scene);
     put(store, .3, dig_approach_plain(), 1.0);
     put(store, .9, dig_approach_plain(), 5.0);
     put(store, .3, turned, 3.0);

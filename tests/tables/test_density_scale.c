@@ -10,8 +10,7 @@
 
 static void make_table(const char *const name, const struct dig_scene *const scene)
 {
-    struct dig_store *store = NULL;
-    assert_int_equal(dig_store_create(scratch_path(name), scene, &store, NULL), DIG_OK);
+    struct dig_store *const store = fixture_create_of(name, scene);
     fixture_put(store, .5, .3, 0, 0, 4.0);
     fixture_put(store, .3, .3, 0, 0, 1.0);
     fixture_put(store, .3, .3, 1, 0, 1.5);
@@ -26,7 +25,7 @@ static void make_table(const char *const name, const struct dig_scene *const sce
 
 static struct dig_scene scaling_scene(void)
 {
-    struct dig_scene scene        = fixture_scene();
+    struct dig_scene scene        = fixture_diving_scene();
     scene.material.young_at_kgpm3 = 2500.0;
     return scene;
 }
@@ -102,7 +101,7 @@ static void expect_as_dug(const char *const name, const struct dig_scene *const 
 static void what_has_a_size_of_its_own_is_no_scale(void **state)
 {
     (void)state;
-    struct dig_scene scene = fixture_scene();
+    struct dig_scene scene = fixture_diving_scene();
     expect_as_dug("plain.sqlite", &scene);
     scene                    = scaling_scene();
     scene.laws.cohesion_Jpm3 = 1e4;

@@ -263,22 +263,23 @@ static void an_approach_out_of_range_is_refused_and_leaves_nothing(void **state)
 }
 
 // Down 20 mm in half a second and 50 mm along in one; at depth 1.5 it is 30 mm down, so that the
-// way along begins at 3/8 of the path, not at 2/7. The moment is the share of the path done, by
-// steps of the pin.
+// way along begins at 3/8 of the path, not at 2/7. The moment is the share of the path done.
 static void a_deep_dig_is_kept_over_its_own_path(void **state)
 {
     (void)state;
     struct dig_scene scene = fixture_scene();
     scene.trajectories     = 1;
     scene.trajectory[0]    = (struct dig_trajectory){
-           "dive", 0.0, 0.1,
-           0.175,  2,   { { "down", 0.5, 0.0, -0.04, 0.0 }, { "along", 1.0, 0.05, 0.0, 0.0 } }
+           .name      = "dive",
+           .start_x_m = 0.1,
+           .start_z_m = 0.175,
+           .phases    = 2,
+           .phase     = { { "down", 0.5, 0.0, -0.04, 0.0 }, { "along", 1.0, 0.05, 0.0, 0.0 } },
     };
-    struct dig_store *store = NULL;
-    struct dig_error  error = { "" };
-    assert_int_equal(dig_store_create(scratch_path("deep.sqlite"), &scene, &store, &error), DIG_OK);
-    static const double  depth[] = { 1.0, 1.5 };
-    struct dig_recording made    = fixture_recording(300, 0.0);
+    struct dig_store *const store   = fixture_create_of("deep.sqlite", &scene);
+    struct dig_error        error   = { "" };
+    static const double     depth[] = { 1.0, 1.5 };
+    struct dig_recording    made    = fixture_recording(300, 0.0);
     for (size_t d = 0; d < 2; d++) {
         const double down_m = 0.02 * depth[d];
         for (size_t i = 0; i < made.rows; i++) {

@@ -84,7 +84,8 @@ enum dig_status digloop_as_dug_at(const struct dig_curve_set *const set, const s
         *index = trajectory;
         return DIG_OK;
     }
-    const struct dig_approach_slots slots  = { .slots = 1, .slot = { { trajectory, nearest } } };
+    const struct dig_approach_slots slots  = { .slots = 1,
+                                               .slot  = { { trajectory, nearest, 0.0 } } };
     const enum dig_status           status = make(set, &slots, table, error);
     if (status == DIG_OK) {
         *index = 0;

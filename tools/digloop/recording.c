@@ -4,7 +4,6 @@
 #include "closed_loop/recordings/saturation.h"
 #include "core/sample.h"
 #include "estimator/approach/approach_slots.h"
-#include "estimator/track/inertia_error.h"
 #include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
@@ -185,9 +184,6 @@ static enum dig_status read_samples(const struct digloop_job *const job, const c
         }
     }
     dig_machine_recording_finish(&recording);
-    for (size_t i = 0; status == DIG_OK && i < digs->digs; i++) {
-        dig_inertia_error_add(&machine->machine, machine->lambda, &digs->dig[i]);
-    }
     return status;
 }
 

@@ -2,8 +2,8 @@
 
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/observe.h"
+#include "closed_loop/recordings/observe_machine.h"
 #include "core/name.h"
-#include "estimator/estimator.h"
 #include "estimator/match/match.h"
 #include "files/lcm/lcm_log.h"
 #include "files/lcm/predicted_curve.h"
@@ -73,56 +73,38 @@ static enum dig_status measure(const struct dig_machine *const    machine,
                                struct dig_observation *const real, struct dig_error *const error)
 {
     struct dig_machine_recording samples = { 0 };
+    struct dig_observed_digs     digs    = { .digs = 0 };
+    struct dig_error             why     = { "" };
     enum dig_status              status  = dig_lcm_log_read(log, &samples, error);
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_estimator_settings settings  = dig_estimator_settings_default();
-    struct dig_estimator *const   estimator = malloc(dig_estimator_size());
-    settings.tick_s                         = 1e-9 *
-                      (double)(samples.row[samples.rows - 1].time_ns - samples.row[0].time_ns) /
-                      (double)(samples.rows - 1);
-    if (estimator == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "out of memory");
-        goto done;
-    }
-    status = dig_estimator_init(estimator, machine, set, &settings);
-    if (status == DIG_OK && correction != NULL) {
-        status = dig_estimator_set_correction(estimator, correction);
-    }
+    status = dig_observe_machine(machine, correction, set, &samples, &digs, &why);
+    dig_machine_recording_finish(&samples);
     if (status != DIG_OK) {
-        (void)dig_error_set(error, status, "%s: %s", log, dig_status_str(status));
-        goto done;
+        return dig_error_set(error, status, "%s: %s", log, why.text);
     }
     const int want_real   = dig_curve_set_find(set, published->curve.trajectory);
     bool      have_simple = false;
     bool      have_real   = false;
-    for (size_t i = 0; i < samples.rows; i++) {
-        struct dig_estimate    estimate;
-        struct dig_observation dig;
-        if (dig_estimator_step(estimator, &samples.row[i], &estimate) != DIG_OK ||
-            !dig_estimator_take_observation(estimator, &dig)) {
-            continue;
-        }
-        if (dig.dig_count == published->matched_dig) {
-            *simple     = dig;
+    for (size_t i = 0; i < digs.digs; i++) {
+        const struct dig_observation *const dig = &digs.dig[i];
+        if (dig->dig_count == published->matched_dig) {
+            *simple     = *dig;
             have_simple = true;
-        } else if (have_simple && !have_real && dig.trajectory == want_real) {
-            *real     = dig;
+        } else if (have_simple && !have_real && dig->trajectory == want_real) {
+            *real     = *dig;
             have_real = true;
         }
     }
-    if (!have_simple || !have_real) {
-        status = dig_error_set(
-            error, DIG_ENOMATCH,
-            "%s: the samples hold no %s, expected the dig that identified and "
-            "the one that was predicted; a daemon that ran with a model wants --model",
-            log, have_simple ? "predicted dig" : "identifying dig");
-    }
-done:
-    free(estimator);
-    dig_machine_recording_finish(&samples);
-    return status;
+    dig_observed_digs_finish(&digs);
+    return have_simple && have_real
+               ? DIG_OK
+               : dig_error_set(
+                     error, DIG_ENOMATCH,
+                     "%s: the samples hold no %s, expected the dig that identified and "
+                     "the one that was predicted; a daemon that ran with a model wants --model",
+                     log, have_simple ? "predicted dig" : "identifying dig");
 }
 
 static enum dig_status add_recordings(const struct digreport_options *const options,
