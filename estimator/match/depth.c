@@ -27,7 +27,7 @@ struct look {
 
 size_t dig_depth_fit_size(const struct dig_curve_set *const set)
 {
-    return dig_approached_size(set, 1);
+    return dig_approach_varies_any(set) ? dig_approached_size(set, 1) : 1;
 }
 
 static double evidence_at(const struct dig_curve_set *const       set,

@@ -18,7 +18,7 @@
 
 #include <stddef.h>
 
-/// Bytes of the memory dig_depth_fit() wants.
+/// Bytes of the memory dig_depth_fit() wants: hardly any for a table of one depth.
 size_t dig_depth_fit_size(const struct dig_curve_set *set);
 
 /// Tells the depth of a dig as dig_recorded_dig_observe() observed it, and lays it over its own
@@ -27,7 +27,7 @@ size_t dig_depth_fit_size(const struct dig_curve_set *set);
 /// matched at that end; what it lies beyond is distance from the path. DIG_ENOMATCH: that is more
 /// than limit_m. DIG_EINVAL: it fails dig_observations_check(). Writes on success only. error: of
 /// each of the set's trajectories, as dig_approach_error_measure() has it. As long as nine
-/// dig_approached_make() of one slot; 150 kB of stack.
+/// dig_approached_make() of one slot; 300 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_depth_fit(const struct dig_curve_set     *set,
                                              const struct dig_approach_error error[],
                                              double limit_m, void *memory,
