@@ -4,6 +4,7 @@
 #include "closed_loop/recordings/observe.h"
 #include "closed_loop/recordings/observe_machine.h"
 #include "core/name.h"
+#include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
 #include "files/lcm/lcm_log.h"
 #include "files/lcm/predicted_curve.h"
@@ -148,6 +149,27 @@ static void fill_dig(struct dig_report_dig *const dig, const struct dig_curve_se
     memcpy(dig->measured_Nm, seen->moment_Nm, sizeof dig->measured_Nm);
 }
 
+// The table's curve of the gravel, at the depth and attack a dig was matched at.
+static enum dig_status curve_as_dug(const struct dig_curve_set *const   set,
+                                    const struct dig_gravel *const      gravel,
+                                    const struct dig_observation *const dig,
+                                    struct dig_curve *const             curve)
+{
+    if (!dig_approach_varies(set, (size_t)dig->trajectory)) {
+        return dig_match_interpolate(set, gravel, (size_t)dig->trajectory, curve);
+    }
+    const struct dig_approached_slot slot   = { .trajectory = (size_t)dig->trajectory,
+                                                .approach   = dig->approach };
+    void *const                      memory = malloc(dig_approached_size(set, 1));
+    if (memory == NULL) {
+        return DIG_ENOMEM;
+    }
+    const enum dig_status status =
+        dig_match_interpolate(dig_approached_make(set, 1, &slot, NULL, memory), gravel, 0, curve);
+    free(memory);
+    return status;
+}
+
 enum dig_status digreport_run(const struct digreport_options *const options,
                               const struct dig_machine *const       machine,
                               const struct dig_correction *const    correction,
@@ -186,7 +208,11 @@ enum dig_status digreport_run(const struct digreport_options *const options,
                    published.forces ? "moment and forces" : "moment alone", run->real.trajectory);
 
     struct dig_curve curve;
-    if (dig_match_interpolate(set, &run->gravel, (size_t)simple.trajectory, &curve) != DIG_OK) {
+    status = curve_as_dug(set, &run->gravel, &simple, &curve);
+    if (status == DIG_ENOMEM) {
+        return dig_error_set(error, status, "out of memory");
+    }
+    if (status != DIG_OK) {
         return dig_error_set(error, DIG_ENOMATCH,
                              "%s: the identified gravel lies outside %s, expected the table the "
                              "daemon ran on",
