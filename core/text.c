@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 // The bytes that a character beginning with c has; 0: none begins so.
 static size_t length_of(const unsigned char c)
@@ -101,6 +102,16 @@ bool dig_text_number(const char *const text, double *const value)
     }
     *value = number;
     return true;
+}
+
+void dig_text_utc(const int64_t unix_s, const size_t size, char text[const])
+{
+    assert(text != NULL && size > 0);
+    const time_t seconds = (time_t)unix_s;
+    struct tm    utc;
+    if (gmtime_r(&seconds, &utc) == NULL || strftime(text, size, "%Y-%m-%dT%H:%M:%SZ", &utc) == 0) {
+        text[0] = '\0';
+    }
 }
 
 int dig_text_line(const char *const text, const size_t at)

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /// The bytes of the printable UTF-8 character at text, 1 to 4; 0 where none begins: at a byte that
@@ -26,6 +27,10 @@ void dig_text_list(size_t size, char list[], const char *word);
 /// A plain decimal number, all of text and finite; strtod() alone would take "nan", "inf" and
 /// "0x1p3" as well. By the thread's locale. False leaves *value.
 bool dig_text_number(const char *text, double *value);
+
+/// Writes the time in UTC as ISO 8601 has it, "2026-01-31T12:00:00Z", which takes 21 bytes; "" of a
+/// time beyond any year.
+void dig_text_utc(int64_t unix_s, size_t size, char text[]);
 
 /// The line, from 1, on which byte `at` of a text stands.
 int dig_text_line(const char *text, size_t at);

@@ -1,5 +1,6 @@
 #include "offline_dem/sweep/sweep.h"
 
+#include "core/text.h"
 #include "offline_dem/dig/checked_pour.h"
 #include "offline_dem/dig/variant.h"
 #include "offline_dem/sweep/worker.h"
@@ -131,11 +132,7 @@ static enum dig_status store_curve(struct sweep *const s, struct dig_worker *con
     memcpy(origin.effect, w->job.effect, sizeof origin.effect);
     (void)snprintf(origin.engine, sizeof origin.engine, "%s", s->engine->name);
     (void)snprintf(origin.version, sizeof origin.version, "%s", s->engine->version);
-    const time_t now = time(NULL);
-    struct tm    utc;
-    if (gmtime_r(&now, &utc) != NULL) {
-        (void)strftime(origin.made_utc, sizeof origin.made_utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    }
+    dig_text_utc(time(NULL), sizeof origin.made_utc, origin.made_utc);
     const struct dig_recording recording = { .rows = m->rows, .row = rows };
     return dig_store_put(s->store, &origin, &recording, error);
 }

@@ -137,9 +137,24 @@ static void what_is_printed_for_people_holds_no_escape_sequence(void **state)
     free(bytes);
 }
 
+static void a_time_is_told_in_utc(void **state)
+{
+    (void)state;
+    char text[21] = "?";
+    dig_text_utc(951782399, sizeof text, text); // date -u -d @951782399 of coreutils
+    assert_string_equal(text, "2000-02-28T23:59:59Z");
+    dig_text_utc(951782400, sizeof text, text);
+    assert_string_equal(text, "2000-02-29T00:00:00Z");
+    dig_text_utc(-1, sizeof text, text);
+    assert_string_equal(text, "1969-12-31T23:59:59Z");
+    dig_text_utc(INT64_MAX, sizeof text, text);
+    assert_string_equal(text, "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_time_is_told_in_utc),
         cmocka_unit_test(a_list_has_commas_between_its_words_and_ends_where_there_is_no_room),
         cmocka_unit_test(a_copy_is_cut_and_clean),
         cmocka_unit_test(characters_are_told_from_bytes_that_are_none),

@@ -1,20 +1,15 @@
 #include "closed_loop/report/json.h"
+#include "core/text.h"
 #include "tools/digreport/shift_page.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 void digreport_time(const int64_t time_us, char text[const DIGREPORT_TIME])
 {
-    const time_t seconds = (time_t)(time_us / 1000000);
-    struct tm    utc;
-    memset(text, 0, DIGREPORT_TIME);
-    if (gmtime_r(&seconds, &utc) != NULL) {
-        (void)strftime(text, DIGREPORT_TIME, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    }
+    dig_text_utc(time_us / 1000000, DIGREPORT_TIME, text);
 }
 
 static void put_duration(const int64_t us, FILE *const to)

@@ -52,11 +52,7 @@ static enum dig_status store_dig(void *const context, const struct dig_foreign_d
     };
     (void)snprintf(origin.engine, sizeof origin.engine, "%.39s", import->map->engine);
     (void)snprintf(origin.version, sizeof origin.version, "%.39s", import->map->version);
-    const time_t now = time(NULL);
-    struct tm    utc;
-    if (gmtime_r(&now, &utc) != NULL) {
-        (void)strftime(origin.made_utc, sizeof origin.made_utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    }
+    dig_text_utc(time(NULL), sizeof origin.made_utc, origin.made_utc);
     const enum dig_status status = dig_store_put(import->store, &origin, &dig->recording, error);
     if (status != DIG_OK) {
         return refuse(import, dig->line, status, error->text, error);
