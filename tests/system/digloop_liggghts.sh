@@ -107,6 +107,17 @@ for gravel in mu0.6_mur0.4_rho2200_bucket0.4 mu0.4_mur0.6_rho3000_bucket0.4; do
     trace $gravel
     check "nothing is missing in $gravel, dug with the table's bucket" [ "$(verdict $gravel)" = '"none"' ]
 done
+
+# As a machine records them, which does not know where the ground lies.
+for dig in "$data"/*_seed[12]__simpleA.csv; do
+    bed=$(basename "${dig%__simpleA.csv}")
+    "$BIN/digrig" record "$dig" --machine config/machines/zx200_trench.yaml --scene config/scenes/product.yaml -o "$work/run.csv" -q
+    "$BIN/digloop" identify $table "$work/run.csv" --machine config/machines/zx200_trench.yaml --trajectory simpleA >"$work/$bed.txt"
+    check "a machine takes $bed for a dig of the table's depth" within \
+        "$(sed -nE 's/.*at depth ([0-9.]+).*/\1/p' "$work/$bed.txt")" .9 1.1
+    check "... by its forces, in gravel of the table" eval 'grep -q "moment and forces" "$work/$bed.txt" && ! grep -q OUTSIDE "$work/$bed.txt"'
+done
+
 data=$data/smooth smooth=mu0.5_mur0.6_rho2600_bucket0.2
 trace $smooth
 check "a bucket smoother than steel is named" [ "$(verdict $smooth)" = '"bucket_friction"' ]
