@@ -21,7 +21,7 @@ for simple in "${@/%//*__simpleA.csv}"; do
         "$bin/digrig" record "$dig" --machine "$machine" --scene "$scene" -o "$work/machine.csv" -q
         if ! "$bin/digloop" identify "$table" "$work/machine.csv" --machine "$machine" --trajectory simpleA \
             --json >"$work/id.json" 2>"$work/why"; then
-            printf '%-40s %6s %6s %6s  refused: %s\n' "$name" - - - "$(sed -nE 's/.*(digs in it: [^;]*),.*/\1/p' "$work/why")"
+            printf '%-40s %6s %6s %6s  refused: %s\n' "$name" - - - "$(sed -nE 's/.*(digs in it: [^;]*), expected.*/\1/p' "$work/why")"
             continue
         fi
         "$bin/digloop" predict "$table" --identified "$work/id.json" --trajectory actual \

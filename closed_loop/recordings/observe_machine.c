@@ -98,9 +98,9 @@ static enum dig_status observe(const struct dig_machine *const           machine
                ? DIG_OK
                : dig_error_set(error, DIG_ENOMATCH,
                                "digs in it: %zu, none of them along %.0f %% or more of a "
-                               "trajectory of the table, expected one or more; where pressures are "
-                               "off in free air, no dig is seen to begin or to end: check the "
-                               "machine (digloop check), or trace the digs",
+                               "trajectory of the table, as deep as that was dug, expected one or "
+                               "more; where pressures are off in free air, no dig is seen to begin "
+                               "or to end: check the machine (digloop check), or trace the digs",
                                digs->seen, 100.0 * DIG_OBSERVE_LEAST_PATH);
 }
 
