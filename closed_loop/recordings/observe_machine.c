@@ -46,11 +46,12 @@ static enum dig_status tell_depths(const struct dig_machine *const   machine,
                                    struct dig_observed_digs *const digs)
 {
     const double              lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
-    void *const               memory = malloc(dig_depth_fit_size(set));
+    const size_t              bytes  = dig_depth_fit_size(set);
+    void *const               memory = bytes > 0 ? malloc(bytes) : NULL;
     bool                      measured[DIG_TRAJECTORY_MAX] = { false };
     size_t                    kept                         = 0;
     struct dig_approach_error error[DIG_TRAJECTORY_MAX];
-    if (memory == NULL) {
+    if (bytes > 0 && memory == NULL) {
         return DIG_ENOMEM;
     }
     for (size_t i = 0; i < digs->digs; i++) {

@@ -27,7 +27,7 @@ struct look {
 
 size_t dig_depth_fit_size(const struct dig_curve_set *const set)
 {
-    return dig_approach_varies_any(set) ? dig_approached_size(set, 1) : 1;
+    return dig_approach_varies_any(set) ? dig_approached_size(set, 1) : 0;
 }
 
 static double evidence_at(const struct dig_curve_set *const       set,
@@ -99,7 +99,7 @@ enum dig_status dig_depth_fit(const struct dig_curve_set *const set,
                               const struct dig_approach_error error[], const double limit_m,
                               void *const memory, struct dig_observation *const dig)
 {
-    assert(set != NULL && memory != NULL && dig != NULL);
+    assert(set != NULL && dig != NULL && (memory != NULL || dig_depth_fit_size(set) == 0));
     if (dig_observations_check(set, 1, dig) != DIG_OK) {
         return DIG_EINVAL;
     }

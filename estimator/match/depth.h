@@ -18,7 +18,7 @@
 
 #include <stddef.h>
 
-/// Bytes of the memory dig_depth_fit() wants: hardly any for a table of one depth.
+/// Bytes of the memory dig_depth_fit() wants: 0, and NULL is allowed, for a table of one depth.
 size_t dig_depth_fit_size(const struct dig_curve_set *set);
 
 /// Tells the depth of a dig as dig_recorded_dig_observe() observed it, and lays it over its own
