@@ -22,9 +22,11 @@ struct dig_observation {
     int                 trajectory;
     double              off_path_m; // rms distance of path and trajectory, rig scale
     struct dig_approach made;       // depth and attack as measured; depth 0: not measured, the
-                                    // table was dug at one depth and attack alone
+                                    // table was dug at one depth and attack alone. Until
+                                    // dig_depth_fit() (estimator/match/depth.h) a rough depth
     struct dig_approach approach;   // the nearest the table covers, at which the dig is matched;
-                                    // zeroed: the plain trajectory
+                                    // zeroed: the plain trajectory. Until then that over whose path
+                                    // it was observed, deeper than the table
     double first, last;             // progress range that was measured
     double moment_Nm[DIG_CURVE_POINTS]; // smoothed, rig scale; 0 outside [first, last]
     double sigma_Nm[DIG_CURVE_POINTS];  // 1 sigma of the measurement after smoothing

@@ -3,8 +3,10 @@
 #include "estimator/match/depth.h"
 
 #include "estimator/approach/approach_route.h"
+#include "estimator/approach/approached.h"
 #include "estimator/approach/laid.h"
 #include "estimator/match/entry_scatter.h"
+#include "estimator/match/posterior.h"
 #include "tests/scratch.h"
 
 #include "tests/approach_table.h"
@@ -106,6 +108,59 @@ static void what_was_not_measured_is_not_made_up(void **state)
     assert_close((1.0 - dig.last) * whole_m[0], 0.1 * whole_m[1], 1e-5);
 }
 
+// In the air nothing resists: a table's curve is 0 before its own start.
+static void a_curve_over_a_deeper_path_begins_later(void **state)
+{
+    (void)state;
+    static struct dig_curve curve;
+    double                  place[DIG_CURVE_POINTS];
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        curve.mean[DIG_CHANNEL_MY_Nm][k] = 1.0F;
+    }
+    dig_laid_places(&table.cube.set, 0, 1.2, 1.0, place);
+    dig_laid_curve(place, &curve);
+    // A fifth of the first leg, of 165.4 mm in all: 9.3 of 255 steps.
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close((double)curve.mean[DIG_CHANNEL_MY_Nm][k], k <= 9 ? 0.0 : 1.0, 1e-6);
+    }
+}
+
+// The depth of the greatest evidence, by 401 tables.
+static double likeliest(const struct dig_observation *const dig)
+{
+    const struct dig_curve_set *const set    = &table.cube.set;
+    void *const                       memory = malloc(dig_depth_fit_size(set));
+    struct dig_approach_error         error[2];
+    struct dig_pool_sums              sums;
+    double                            best = 0.0;
+    double                            most = -INFINITY;
+    dig_approach_error_measure(set, 0, &error[0]);
+    dig_pool_sum(1, dig, &sums);
+    for (int i = 0; i <= 400; i++) {
+        const struct dig_approached_slot slot = { 0, { 0.8 + 0.001 * i, 0.0 }, over };
+        const double                     evidence =
+            dig_posterior_evidence(dig_approached_make(set, 1, &slot, error, memory), &sums);
+        best = evidence > most ? 0.8 + 0.001 * i : best;
+        most = fmax(most, evidence);
+    }
+    free(memory);
+    return best;
+}
+
+// Nine looks, .05 apart here, find what many do, to half a step.
+static void the_likeliest_depth_is_found_by_few_looks(void **state)
+{
+    (void)state;
+    static const double depth[] = { 0.875, 0.93, 1.07, 1.12 };
+    for (size_t i = 0; i < sizeof depth / sizeof depth[0]; i++) {
+        struct dig_observation dig  = observe(5, depth[i], over, NULL);
+        const double           best = likeliest(&dig);
+        assert_int_equal(fit(0.008, &dig), DIG_OK);
+        print_message("depth %.3f: told %.4f, likeliest %.3f\n", depth[i], dig.made.depth, best);
+        assert_close(dig.made.depth, best, 0.025);
+    }
+}
+
 // Digs that scatter as the table says; where the soil begins to resist tells less.
 static void depth_is_told_by_all_of_a_dig(void **state)
 {
@@ -177,6 +232,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_dig_laid_over_another_path_stays_where_it_was, set_up),
         cmocka_unit_test_setup(what_was_not_measured_is_not_made_up, set_up),
+        cmocka_unit_test_setup(a_curve_over_a_deeper_path_begins_later, set_up),
+        cmocka_unit_test_setup(the_likeliest_depth_is_found_by_few_looks, set_up),
         cmocka_unit_test_setup(depth_is_told_by_all_of_a_dig, set_up),
         cmocka_unit_test_setup(what_seems_to_lie_beyond_the_table_is_distance, set_up),
         cmocka_unit_test_setup(a_table_of_one_depth_tells_none, set_up),
