@@ -44,8 +44,8 @@ tables/schema          | canonical_scene schema seal
 tables                 derive export listed load load_effects merge queue scene store
 offline_dem/law        | both law law_general period random rigid wall
 offline_dem/shapes     | bucket_surface clump rock_surface tool
-offline_dem/kernel     bed | clump_body contacts grains kernel neighbour
-offline_dem/world      | bodies crew device grain_types obstacles ode_rocks ode_scene offloaded world
+offline_dem/kernel     bed | clump_body contacts crew grains kernel neighbour
+offline_dem/world      | bodies device grain_types obstacles ode_rocks ode_scene offloaded world
 offline_dem/dig        checked_pour dig input_checks variant | setup
 offline_dem/sweep      sweep
 offline_dem/device     engine_cuda | device_grain device_surfaces

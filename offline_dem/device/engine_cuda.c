@@ -20,38 +20,38 @@ static struct dig_device *open_card(const struct dig_scene *const scene,
     return card;
 }
 
-static enum dig_status pour(const struct dig_stepper *const none,
+static enum dig_status pour(const struct dig_stepper *const asked,
                             const struct dig_scene *const   scene,
                             const struct dig_gravel *const gravel, const uint64_t seed,
                             const struct dig_progress *const progress, struct dig_bed *const bed,
                             struct dig_error *const error)
 {
-    (void)none; // a card for every bed, in the process that pours it
+    // A card for every bed, in the process that pours it.
     enum dig_status          status = DIG_OK;
     struct dig_device *const card   = open_card(scene, &status, error);
     if (card == NULL) {
         return status;
     }
-    const struct dig_stepper stepper = { .device = card };
+    const struct dig_stepper stepper = { .device = card, .threads = asked->threads };
     status = dig_bed_pour_checked(&stepper, scene, gravel, seed, progress, bed, error);
     card->destroy(card);
     return status;
 }
 
-static enum dig_status dig(const struct dig_stepper *const none,
+static enum dig_status dig(const struct dig_stepper *const asked,
                            const struct dig_scene *const   scene,
                            const struct dig_gravel *const gravel, const struct dig_bed *const bed,
                            const struct dig_trajectory *const trajectory, const char *const vtk_dir,
                            const struct dig_progress *const progress,
                            struct dig_recording *const recording, struct dig_error *const error)
 {
-    (void)none; // a card for every bed, in the process that pours it
+    // A card for every bed, in the process that pours it.
     enum dig_status          status = DIG_OK;
     struct dig_device *const card   = open_card(scene, &status, error);
     if (card == NULL) {
         return status;
     }
-    const struct dig_stepper stepper = { .device = card };
+    const struct dig_stepper stepper = { .device = card, .threads = asked->threads };
     status =
         dig_dig_run(&stepper, scene, gravel, bed, trajectory, vtk_dir, progress, recording, error);
     card->destroy(card);

@@ -7,7 +7,8 @@
 
 #include "offline_dem/sweep/sweep.h"
 
-/// No movable rocks. DIG_EIO where the library or a card is missing; *error says which.
+/// stepper.threads make the lists of a large bed. No movable rocks. DIG_EIO where the library or a
+/// card is missing; *error says which.
 struct dig_engine dig_engine_cuda(void);
 
 #endif // DIG_OFFLINE_DEM_DEVICE_ENGINE_CUDA_H

@@ -21,7 +21,8 @@ struct dig_device;
 struct dig_stepper {
     struct dig_device *device;           // NULL: the kernel
     bool               single_precision; // of the kernel, where it can (kernel.h)
-    size_t             threads; // of the kernel in a large bed; 0, 1: none beside the caller
+    size_t
+        threads; // in a large bed; 0, 1: none beside the caller. With a device they make its lists
 };
 
 /// Called from the computing thread every few hundred steps with the simulated time done and in

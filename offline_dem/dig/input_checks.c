@@ -95,7 +95,7 @@ enum dig_status dig_input_checks_overlap(const struct dig_world *const world,
         margin[i] = OVERLAP_MARGIN * g->type[g->type_of[i]].radius_m;
     }
     if (margin != NULL) {
-        status = dig_neighbours_build(g, world->period_y_m, margin, &near);
+        status = dig_neighbours_build(g, world->period_y_m, margin, NULL, &near);
     }
     status = status == DIG_OK ? find_overlap(world, &near, error)
                               : dig_error_set(error, status, "%s", dig_status_str(status));

@@ -1,8 +1,8 @@
 #include "offline_dem/dig/setup.h"
 
 #include "core/units.h"
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/world/bodies.h"
-#include "offline_dem/world/crew.h"
 #include "offline_dem/world/offloaded.h"
 
 #include <math.h>
@@ -135,7 +135,8 @@ enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
     enum dig_status status = DIG_OK;
     if (stepper->device != NULL) {
         status = dig_offload(world, stepper->device);
-    } else if (stepper->threads > 1 && world->grains.n >= least_to_share) {
+    }
+    if (status == DIG_OK && stepper->threads > 1 && world->grains.n >= least_to_share) {
         status = dig_crew_create(stepper->threads, &world->crew);
     }
     return status == DIG_OK ? status : dig_setup_explain(status, error);

@@ -1,5 +1,7 @@
 #include "offline_dem/kernel/neighbour.h"
 
+#include "offline_dem/kernel/crew.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -122,18 +124,25 @@ enum dig_status dig_neighbours_sort(const struct dig_grains *const grains, const
     return DIG_OK;
 }
 
-static enum dig_status make_room(struct dig_neighbours *const list, const size_t need)
+// The pairs that one member of a crew has found.
+struct finds {
+    uint32_t       *other;
+    size_t          used, room;
+    enum dig_status status;
+};
+
+static enum dig_status make_room(struct finds *const finds, const size_t need)
 {
-    if (need <= list->room) {
+    if (need <= finds->room) {
         return DIG_OK;
     }
     const size_t    room  = need + need / 2 + 1024;
-    uint32_t *const other = realloc(list->other, room * sizeof *other);
+    uint32_t *const other = realloc(finds->other, room * sizeof *other);
     if (other == NULL) {
         return DIG_ENOMEM;
     }
-    list->other = other;
-    list->room  = room;
+    finds->other = other;
+    finds->room  = room;
     return DIG_OK;
 }
 
@@ -177,14 +186,14 @@ static bool is_listed(const struct query *const q, const struct cell_grain *cons
     return is_first && apart && dy_m >= -q->half_m && dy_m < q->half_m;
 }
 
-// The pairs of the query's grain, appended at *used.
+// Appends the pairs of the query's grain.
 static enum dig_status search(const struct query *const q, const struct grid *const g,
-                              struct dig_neighbours *const list, size_t *const used)
+                              struct finds *const finds)
 {
     const double *const x     = q->x_m;
     const double        own_m = q->own.radius_m + q->own.margin_m;
     const double        far_m = q->own.radius_m + q->radius_max_m + 2.0 * q->own.margin_m;
-    size_t              count = *used;
+    size_t              count = finds->used;
     ptrdiff_t           low[3];
     ptrdiff_t           high[3];
     for (int a = 0; a < 3; a++) {
@@ -199,7 +208,7 @@ static enum dig_status search(const struct query *const q, const struct grid *co
             const size_t row   = (size_t)(g->count[a] * (ib + g->count[b] * ic));
             const size_t first = g->start[row + (size_t)low[a]];
             const size_t last  = g->start[row + (size_t)high[a] + 1];
-            if (make_room(list, count + (last - first)) != DIG_OK) {
+            if (make_room(finds, count + (last - first)) != DIG_OK) {
                 return DIG_ENOMEM;
             }
             for (size_t k = first; k < last; k++) {
@@ -208,31 +217,119 @@ static enum dig_status search(const struct query *const q, const struct grid *co
                 const double reach_m = own_m + y->radius_m + y->margin_m;
                 if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m &&
                     is_listed(q, y, d[1])) {
-                    list->other[count++] = y->grain;
+                    finds->other[count++] = y->grain;
                 }
             }
         }
     }
-    *used = count;
+    finds->used = count;
     return DIG_OK;
 }
 
 // Searches around the grain, and around its images where y is periodic.
 static enum dig_status search_images(struct query *const q, const struct grid *const g,
-                                     const double period_m, struct dig_neighbours *const list,
-                                     size_t *const used)
+                                     const double period_m, struct finds *const finds)
 {
     memcpy(q->x_m, q->own.x_m, sizeof q->x_m);
-    enum dig_status status = search(q, g, list, used);
+    enum dig_status status = search(q, g, finds);
     for (int side = -1; period_m > 0.0 && side <= 1 && status == DIG_OK; side += 2) {
         q->x_m[1] = q->own.x_m[1] + side * period_m;
-        status    = search(q, g, list, used);
+        status    = search(q, g, finds);
     }
     return status;
 }
 
+// A search that a crew shares. Each member finds the pairs of its grains.
+struct shared_search {
+    const struct dig_grains *grains;
+    const double            *margin_m;
+    double                   period_m, radius_max_m;
+    struct grid              grid;
+    struct cell_grain       *cell_grain; // [n] in the order of the grid's members
+    struct dig_crew         *crew;
+    struct finds            *finds; // [members]
+    struct dig_neighbours   *list;
+};
+
+static void order_by_cells(void *const context, const size_t member)
+{
+    const struct shared_search *const s   = context;
+    const size_t                      end = dig_crew_share(s->crew, s->grains->n, member + 1);
+    for (size_t k = dig_crew_share(s->crew, s->grains->n, member); k < end; k++) {
+        s->cell_grain[k] = make_cell_grain(s->grains, s->margin_m, s->grid.member[k]);
+    }
+}
+
+static void search_share(void *const context, const size_t member)
+{
+    const struct shared_search *const s     = context;
+    struct finds *const               finds = &s->finds[member];
+    const size_t                      end   = dig_crew_share(s->crew, s->grains->n, member + 1);
+    struct query                      q     = {
+                                 .all          = s->cell_grain,
+                                 .radius_max_m = s->radius_max_m,
+                                 .half_m = s->period_m > 0.0 ? 0.5 * s->period_m : (double)INFINITY,
+    };
+    for (size_t i = dig_crew_share(s->crew, s->grains->n, member);
+         i < end && finds->status == DIG_OK; i++) {
+        s->list->start[i] = (uint32_t)finds->used; // from the member's first
+        q.own             = make_cell_grain(s->grains, s->margin_m, (uint32_t)i);
+        finds->status     = search_images(&q, &s->grid, s->period_m, finds);
+    }
+}
+
+// What a member has found moves to its place in the list. The first member's is there.
+static void place_share(void *const context, const size_t member)
+{
+    const struct shared_search *const s    = context;
+    size_t                            from = 0;
+    for (size_t m = 0; m < member; m++) {
+        from += s->finds[m].used;
+    }
+    const size_t end = dig_crew_share(s->crew, s->grains->n, member + 1);
+    for (size_t i = dig_crew_share(s->crew, s->grains->n, member); i < end && from > 0; i++) {
+        s->list->start[i] += (uint32_t)from;
+    }
+    if (member > 0 && s->finds[member].used > 0) {
+        memcpy(s->list->other + from, s->finds[member].other,
+               s->finds[member].used * sizeof *s->list->other);
+    }
+}
+
+// Fills the list from what is in cells. The first member finds into the list's own memory.
+static enum dig_status find_pairs(struct shared_search *const s)
+{
+    const size_t members = dig_crew_members(s->crew);
+    s->finds             = calloc(members, sizeof *s->finds);
+    if (s->finds == NULL) {
+        return DIG_ENOMEM;
+    }
+    s->finds[0].other = s->list->other;
+    s->finds[0].room  = s->list->room;
+    dig_crew_run(s->crew, search_share, s);
+    enum dig_status status = DIG_OK;
+    size_t          found  = 0;
+    for (size_t m = 0; m < members; m++) {
+        found += s->finds[m].used;
+        status = s->finds[m].status == DIG_OK ? status : s->finds[m].status;
+    }
+    status         = status == DIG_OK ? make_room(&s->finds[0], found) : status;
+    s->list->other = s->finds[0].other;
+    s->list->room  = s->finds[0].room;
+    if (status == DIG_OK) {
+        dig_crew_run(s->crew, place_share, s);
+        s->list->start[s->grains->n] = (uint32_t)found;
+    }
+    for (size_t m = 1; m < members; m++) {
+        free(s->finds[m].other);
+    }
+    free(s->finds);
+    return status;
+}
+
 enum dig_status dig_neighbours_build(const struct dig_grains *const grains, const double period_y_m,
-                                     const double margin_m[], struct dig_neighbours *const list)
+                                     const double margin_m[], struct dig_crew *const crew,
+                                     struct dig_neighbours *const list)
 {
     const size_t n = grains->n;
     if (list->n != n || list->start == NULL) {
@@ -259,37 +356,27 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         memcpy(list->reference_m[i], grains->motion[i].x_m, 3 * sizeof(double));
         list->reference_m[i][3] = margin_m[i];
     }
-    struct grid     g;
-    enum dig_status status = fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), &g);
-    if (status != DIG_OK) {
-        dig_neighbours_finish(list);
-        return status;
-    }
-    struct cell_grain *const cell_grain = malloc((n + 1) * sizeof *cell_grain);
-    if (cell_grain == NULL) {
-        status = DIG_ENOMEM;
-        goto done;
-    }
-    for (size_t k = 0; k < n; k++) {
-        cell_grain[k] = make_cell_grain(grains, margin_m, g.member[k]);
-    }
-    struct query q = {
-        .all          = cell_grain,
+    struct shared_search search = {
+        .grains       = grains,
+        .margin_m     = margin_m,
+        .period_m     = period_y_m,
         .radius_max_m = radius_max_m,
-        .half_m       = period_y_m > 0.0 ? 0.5 * period_y_m : (double)INFINITY,
+        .crew         = crew,
+        .list         = list,
     };
-    size_t used = 0;
-    for (size_t i = 0; i < n && status == DIG_OK; i++) {
-        list->start[i] = (uint32_t)used;
-        q.own          = make_cell_grain(grains, margin_m, (uint32_t)i);
-        status         = search_images(&q, &g, period_y_m, list, &used);
+    enum dig_status status = fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), &search.grid);
+    if (status == DIG_OK) {
+        search.cell_grain = malloc((n + 1) * sizeof *search.cell_grain);
+        if (search.cell_grain == NULL) {
+            status = DIG_ENOMEM;
+        } else {
+            dig_crew_run(crew, order_by_cells, &search);
+            status = find_pairs(&search);
+        }
+        free(search.cell_grain);
+        free(search.grid.start);
+        free(search.grid.member);
     }
-    list->start[n] = (uint32_t)used;
-
-done:
-    free(cell_grain);
-    free(g.start);
-    free(g.member);
     if (status != DIG_OK) {
         dig_neighbours_finish(list);
     }

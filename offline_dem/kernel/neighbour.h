@@ -14,6 +14,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct dig_crew;
+
 struct dig_neighbours {
     size_t    n;     // grains it was made for
     uint32_t *start; // [n + 1]: the pairs found by grain i are start[i] … start[i + 1] - 1
@@ -29,10 +31,11 @@ DIG_MUST_CHECK enum dig_status dig_neighbours_sort(const struct dig_grains *grai
 
 /// Lists every pair once, but not those within a clump, under the grain with the larger margin (on
 /// a tie the lower index). margin_m[i] > 0 for every grain. *list is zeroed or was filled by this
-/// function, which reuses its memory. DIG_ENOMEM leaves an empty list. O(n) for grains of similar
-/// size.
+/// function, which reuses its memory. A crew shares the search, NULL: the caller alone; the list is
+/// the same. DIG_ENOMEM leaves an empty list. O(n) for grains of similar size.
 DIG_MUST_CHECK enum dig_status dig_neighbours_build(const struct dig_grains *grains,
                                                     double period_y_m, const double margin_m[],
+                                                    struct dig_crew       *crew,
                                                     struct dig_neighbours *list);
 
 /// Largest distance in memory between the two grains of a pair.

@@ -29,11 +29,11 @@ struct dig_engine dig_engine_kernel(void)
     };
 }
 
-struct dig_engine dig_engine_single(const size_t threads)
+struct dig_engine dig_engine_single(void)
 {
     struct dig_engine engine = dig_engine_kernel();
     engine.name              = "single";
-    engine.stepper           = (struct dig_stepper){ .single_precision = true, .threads = threads };
+    engine.stepper           = (struct dig_stepper){ .single_precision = true };
     return engine;
 }
 

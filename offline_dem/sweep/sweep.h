@@ -45,8 +45,8 @@ struct dig_engine {
 struct dig_engine dig_engine_kernel(void);
 
 /// The same in single precision, where the law allows (offline_dem/kernel/kernel.h): faster, and
-/// other digs of the same gravel. A large bed is stepped by so many threads, with the same bits.
-struct dig_engine dig_engine_single(size_t threads);
+/// other digs of the same gravel. stepper.threads step a large bed, with the same bits.
+struct dig_engine dig_engine_single(void);
 
 /// Progress of a sweep. digs_under_way counts fractions of running digs.
 struct dig_sweep_state {

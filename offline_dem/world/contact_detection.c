@@ -1,7 +1,7 @@
 #include "offline_dem/world/contact_detection.h"
 
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/period.h"
-#include "offline_dem/world/crew.h"
 
 #include <math.h>
 #include <stdlib.h>

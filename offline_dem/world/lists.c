@@ -121,7 +121,7 @@ enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_sk
         const double moving_m = skin.steps * w->dt_s * speed(&w->grains, i);
         margin[i]             = fmin(skin.radii * radius_m + moving_m, skin.most_radii * radius_m);
     }
-    status = dig_neighbours_build(&w->grains, w->period_y_m, margin, &w->neighbours);
+    status = dig_neighbours_build(&w->grains, w->period_y_m, margin, w->crew, &w->neighbours);
     if (status != DIG_OK) {
         goto done;
     }

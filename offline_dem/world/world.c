@@ -1,7 +1,7 @@
 #include "offline_dem/world/world.h"
 
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/world/bodies.h"
-#include "offline_dem/world/crew.h"
 #include "offline_dem/world/lists.h"
 #include "offline_dem/world/offloaded.h"
 #include "offline_dem/world/surfaces.h"

@@ -8,8 +8,8 @@
 //                                  seconds that passed
 // Gravel and time step are those of config/scenes/rig.yaml.
 
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/random.h"
-#include "offline_dem/world/crew.h"
 #include "offline_dem/world/world.h"
 #include "tests/dem_grains.h"
 

@@ -2,8 +2,8 @@
 // alike on any number of them.
 
 #include "offline_dem/dig/setup.h"
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/random.h"
-#include "offline_dem/world/crew.h"
 #include "tests/dem_fixture.h"
 
 #include <stdatomic.h>

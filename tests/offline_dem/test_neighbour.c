@@ -1,5 +1,6 @@
 // The neighbour list against looking at every pair.
 
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/kernel/neighbour.h"
 #include "offline_dem/law/random.h"
 #include "tests/dem_grains.h"
@@ -57,7 +58,8 @@ static void expect_all_pairs(const double period_m)
     for (uint64_t seed = 1; seed <= 5; seed++) {
         struct scatter        s    = make_scatter(seed);
         struct dig_neighbours list = { 0 };
-        assert_int_equal(dig_neighbours_build(&s.grains, period_m, s.margin_m, &list), DIG_OK);
+        assert_int_equal(dig_neighbours_build(&s.grains, period_m, s.margin_m, NULL, &list),
+                         DIG_OK);
         unsigned char *const seen = calloc((size_t)GRAINS * GRAINS, 1);
         assert_non_null(seen);
         for (size_t i = 0; i < GRAINS; i++) {
@@ -94,18 +96,41 @@ static void every_near_pair_across_the_sides_is_listed_once(void **state)
     expect_all_pairs(0.061);
 }
 
+static void any_crew_finds_the_same_list(void **state)
+{
+    (void)state;
+    struct scatter        s     = make_scatter(2);
+    struct dig_neighbours alone = { 0 };
+    struct dig_neighbours list  = { 0 };
+    assert_int_equal(dig_neighbours_build(&s.grains, 0.061, s.margin_m, NULL, &alone), DIG_OK);
+    for (size_t members = 2; members <= 5; members++) {
+        struct dig_crew *crew = NULL;
+        assert_int_equal(dig_crew_create(members, &crew), DIG_OK);
+        for (int again = 0; again < 2; again++) {
+            assert_int_equal(dig_neighbours_build(&s.grains, 0.061, s.margin_m, crew, &list),
+                             DIG_OK);
+            assert_memory_equal(list.start, alone.start, (GRAINS + 1) * sizeof *list.start);
+            assert_memory_equal(list.other, alone.other, list.start[GRAINS] * sizeof *list.other);
+        }
+        dig_crew_destroy(crew);
+    }
+    dig_neighbours_finish(&alone);
+    dig_neighbours_finish(&list);
+    dig_grains_finish(&s.grains);
+}
+
 static void a_list_can_be_built_again_for_other_grains(void **state)
 {
     (void)state;
     struct dig_neighbours list = { 0 };
     struct scatter        s    = make_scatter(1);
-    assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, &list), DIG_OK);
+    assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, NULL, &list), DIG_OK);
     unsigned char drop[GRAINS] = { 0 };
     for (size_t i = 3; i < GRAINS; i++) {
         drop[i] = 1;
     }
     dig_grains_drop(&s.grains, drop);
-    assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, &list), DIG_OK);
+    assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, NULL, &list), DIG_OK);
     assert_int_equal(list.n, 3);
     assert_true(list.start[3] <= 3);
     dig_neighbours_finish(&list);
@@ -146,7 +171,7 @@ static void no_grains_make_an_empty_list(void **state)
     (void)state;
     struct dig_grains     none = { 0 };
     struct dig_neighbours list = { 0 };
-    assert_int_equal(dig_neighbours_build(&none, 0.0, NULL, &list), DIG_OK);
+    assert_int_equal(dig_neighbours_build(&none, 0.0, NULL, NULL, &list), DIG_OK);
     assert_int_equal(list.start[0], 0);
     dig_neighbours_finish(&list);
     dig_neighbours_finish(&list);
@@ -181,6 +206,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_near_pair_is_listed_once_and_no_other),
         cmocka_unit_test(every_near_pair_across_the_sides_is_listed_once),
+        cmocka_unit_test(any_crew_finds_the_same_list),
         cmocka_unit_test(a_list_can_be_built_again_for_other_grains),
         cmocka_unit_test(the_order_is_a_permutation_along_the_cells),
         cmocka_unit_test(no_grains_make_an_empty_list),

@@ -113,15 +113,17 @@ static bool take_engine(const char *const value, struct dig_arguments *const a)
     static const struct {
         const char *name;
         struct dig_engine (*make)(void);
+        bool has_threads;
     } engines[] = {
-        { "single", NULL }, // it takes a number of threads
-        { "kernel", dig_engine_kernel },
-        { "ode", dig_engine_ode },
-        { "cuda", dig_engine_cuda },
+        { "single", dig_engine_single, true },
+        { "kernel", dig_engine_kernel, false },
+        { "ode", dig_engine_ode, false },
+        { "cuda", dig_engine_cuda, true },
     };
     for (size_t e = 0; e < sizeof engines / sizeof engines[0]; e++) {
         if (strcmp(value, engines[e].name) == 0) {
-            a->engine = engines[e].make;
+            a->engine      = engines[e].make;
+            a->has_threads = engines[e].has_threads;
             return true;
         }
     }
@@ -130,7 +132,9 @@ static bool take_engine(const char *const value, struct dig_arguments *const a)
 
 struct dig_engine dig_cli_engine(const struct dig_arguments *const a)
 {
-    return a->engine != NULL ? a->engine() : dig_engine_single(a->threads);
+    struct dig_engine engine = a->engine();
+    engine.stepper.threads   = a->threads;
+    return engine;
 }
 
 // --time 1:00:00 is two words for sbatch, --sbatch-arg one.
@@ -224,6 +228,8 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
         .young_Pa     = (double)NAN,
         .seed         = 1,
         .workers      = all_cores(),
+        .engine       = dig_engine_single,
+        .has_threads  = true,
         .time_limit_s = (double)INFINITY,
     };
     struct dig_error error = { "" };
@@ -253,10 +259,10 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
         }
         a->positional[a->positionals++] = argv[optind];
     }
-    if (a->threads > 0 && a->engine != NULL) {
-        return dig_cli_bad_usage("--threads: only --engine single has them");
+    if (a->threads > 0 && !a->has_threads) {
+        return dig_cli_bad_usage("--threads: only --engine single and cuda have them");
     }
-    if (a->threads == 0) {
+    if (a->threads == 0 && a->has_threads) {
         a->threads = strcmp(command->name, "dig") == 0 ? all_cores() : 1;
     }
     return EXIT_DONE;

@@ -27,14 +27,15 @@ struct dig_arguments {
     struct dig_approach approach;                // plain: not given
     double              young_Pa;                // NaN: the scene's
     unsigned long       seed, workers, packings; // 0 packings: the grid's
-    unsigned long       threads;                 // of --engine single
+    unsigned long       threads;                 // of a large bed
     unsigned long       shard, shards;           // from 0; 0 shards: all
     unsigned long       tasks;                   // 0: not given
     const char         *slurm_option[DIG_SLURM_OPTIONS_MAX];
     size_t              slurm_options;
     double              time_limit_s;
     enum dig_channel    channel;
-    struct dig_engine (*engine)(void); // NULL: the single one
+    struct dig_engine (*engine)(void);
+    bool has_threads; // the engine
     bool csv, json, runs, effects, complete, quiet, slurm;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;

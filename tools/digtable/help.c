@@ -79,7 +79,8 @@ static const struct dig_option options[] = {
     { "output", OPTION_OUTPUT, "FILE.csv", " export ", "the file to write, not standard output" },
     { "jobs", OPTION_JOBS, "N", " generate submit ", "digs at a time here (default: one a core)" },
     { "threads", OPTION_THREADS, "N", " dig generate ",
-      "of --engine single in a bed of more than 30 000 grains (dig: one a core, generate: 1)" },
+      "of engines single and cuda in a bed of more than 30 000 grains (dig: one a core, generate: "
+      "1)" },
     { "packings", OPTION_PACKINGS, "N", " generate submit ",
       "beds of each gravel, not the grid's number" },
     { "time-limit", OPTION_TIME_LIMIT, "S", " generate ", "begin no dig after S seconds" },

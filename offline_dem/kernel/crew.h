@@ -1,8 +1,8 @@
 // Threads that share the work of one step of a large world. What a member does must not depend on
 // how many there are.
 
-#ifndef DIG_OFFLINE_DEM_WORLD_CREW_H
-#define DIG_OFFLINE_DEM_WORLD_CREW_H
+#ifndef DIG_OFFLINE_DEM_KERNEL_CREW_H
+#define DIG_OFFLINE_DEM_KERNEL_CREW_H
 
 #include "core/status.h"
 
@@ -26,4 +26,4 @@ void dig_crew_run(struct dig_crew *crew, void (*work)(void *context, size_t memb
 /// NULL is allowed.
 void dig_crew_destroy(struct dig_crew *crew);
 
-#endif // DIG_OFFLINE_DEM_WORLD_CREW_H
+#endif // DIG_OFFLINE_DEM_KERNEL_CREW_H

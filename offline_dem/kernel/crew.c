@@ -1,4 +1,4 @@
-#include "offline_dem/world/crew.h"
+#include "offline_dem/kernel/crew.h"
 
 #include <assert.h>
 #include <pthread.h>
