@@ -96,6 +96,9 @@ void dig_curve_smooth(size_t n, const double t_s[], const double y[], double hal
 struct dig_curve {
     float mean[DIG_CHANNELS][DIG_CURVE_POINTS];
     float sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+    // What the mean errs by beyond the scatter of its packings, relative to its rms: of a curve
+    // between depths or with an effect. It is in sd, too.
+    float error[DIG_CHANNELS];
 };
 
 /// Mean of the squares over the points of one channel.

@@ -5,9 +5,10 @@
 
 Every bed of plain gravel in RUNS is identified by its simpleA dig (`digloop identify`), which predicts its actual dig (`digloop
 predict`), and is traced by all its digs (`digloop trace`). One line a bed: truth, then what is told and whether the interval holds it
-(+ and - where it lies above and below). The last lines count. Some two seconds a bed.
+(+ and - where the truth lies below and above it). The last lines count. Some two seconds a bed.
 """
 import json
+import math
 import os
 import sqlite3
 import subprocess
@@ -72,8 +73,7 @@ def study(binaries, table, scene, truth, digs, work):
     run(f"{binaries}/digloop", "trace", table, work, "--json", trace, "-q")
     with open(trace, encoding="utf-8") as read:
         traced = json.load(read)
-    single = [(found["gravel"][a], found["low"][i], found["high"][i]) for i, a in enumerate(AXES)] if isinstance(found["low"], list) else \
-        [(found["gravel"][a], found["low"][a], found["high"][a]) for a in AXES]
+    single = [(found["mean"][a], found["low"][a], found["high"][a]) for a in AXES]
     material = traced["material"]
     joint = [(material[a]["value"], material[a]["low"], material[a]["high"]) for a in AXES]
     return single, joint, traced["verdict"], found["outside"], told
@@ -85,7 +85,7 @@ def main():
     table = sys.argv[1]
     binaries = os.environ.get("BIN", "build/bin")
     scene = json.loads(run(f"{binaries}/digtable", "list", table, "--json"))["scene"]["name"]
-    held, beds, named, errors, floors = [[0] * 3, [0] * 3], 0, 0, [], []
+    held, off2, beds, named, errors, floors = [[0] * 3, [0] * 3], [[0.0] * 3, [0.0] * 3], 0, 0, [], []
     print("truth            from simpleA alone           from all digs                verdict     error  floor")
     for path in sys.argv[2:]:
         for truth, digs in beds_of(path):
@@ -96,6 +96,7 @@ def main():
                 marks = [where(truth[i], low, high) for i, (_, low, high) in enumerate(answer)]
                 for i, mark in enumerate(marks):
                     held[which][i] += mark == " "
+                    off2[which][i] += (answer[i][0] - truth[i]) ** 2
                 text.append(f"{answer[0][0]:.2f}{marks[0]}/{answer[1][0]:.2f}{marks[1]}/{answer[2][0]:.0f}{marks[2]}")
             beds += 1
             named += verdict != ["none"]
@@ -104,8 +105,10 @@ def main():
             print(f"{truth[0]:.2f}/{truth[1]:.2f}/{truth[2]:.0f}   {text[0]:28s} {text[1]:28s} {','.join(verdict):10s} "
                   f"{told['error']:6.3f} {told['noise_floor']:6.3f}{'  outside' if outside else ''}", flush=True)
     for which, answer in enumerate(("from simpleA alone", "from all digs")):
-        print(f"{answer}: friction {held[which][0]}, rolling {held[which][1]}, density {held[which][2]} of {beds}")
-    print(f"named: {named}; error of actual, median: {sorted(errors)[beds // 2]:.3f}, noise floor: {sorted(floors)[beds // 2]:.3f}")
+        off = [math.sqrt(square / beds) for square in off2[which]]
+        print(f"{answer}: friction {held[which][0]}, rolling {held[which][1]}, density {held[which][2]} of {beds}; "
+              f"off by {off[0]:.3f}, {off[1]:.3f}, {off[2]:.0f} kg/m3 (rms)")
+    print(f"named: {named}; error of actual: mean {sum(errors) / beds:.3f}, noise floor {sum(floors) / beds:.3f}")
 
 
 if __name__ == "__main__":

@@ -71,6 +71,7 @@ void dig_ensemble_curve(const struct dig_ensemble *const ensemble, struct dig_cu
 {
     const size_t n = ensemble->packings;
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
+        curve->error[c] = 0.0F;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             curve->mean[c][k] = (float)ensemble->mean[c][k];
             curve->sd[c][k] =

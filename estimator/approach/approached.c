@@ -13,7 +13,7 @@
 // The parts of the memory, each aligned for its type. The responses of the entries that were dug so
 // serve one slot after the other.
 struct layout {
-    size_t packings, curve, own, response, whole;
+    size_t packings, curve, covariance, own, response, whole;
 };
 
 static size_t up_to(const size_t offset, const size_t alignment)
@@ -33,7 +33,9 @@ static struct layout lay_out(const struct dig_curve_set *const set, const size_t
     const size_t  n = set->entries * slots;
     struct layout l = { .packings = up_to(sizeof(struct dig_curve_set), _Alignof(int)) };
     l.curve         = up_to(l.packings + n * sizeof(int), _Alignof(struct dig_curve));
-    l.own = up_to(l.curve + n * sizeof(struct dig_curve), _Alignof(struct dig_response *));
+    l.covariance = up_to(l.curve + n * sizeof(struct dig_curve), _Alignof(struct dig_covariance));
+    l.own        = up_to(l.covariance + slots * sizeof(struct dig_covariance),
+                         _Alignof(struct dig_response *));
     l.response =
         up_to(l.own + set->entries * sizeof(struct dig_response *), _Alignof(struct dig_response));
     l.whole = l.response + dug_otherwise(set) * sizeof(struct dig_response);
@@ -97,6 +99,7 @@ static int change(const struct dig_response *const response, const struct dig_cu
             const double sd = (double)plain->sd[c][k] * grown;
             curve->sd[c][k] = (float)sqrt(sd * sd + error2[c] * rms * rms);
         }
+        curve->error[c] = grown > 0.0 ? (float)(sqrt(error2[c]) / grown) : 0.0F;
     }
     const double packings = 1.0 / response->inverse_packings;
     return packings > 1.0 ? (int)packings : 1;
@@ -195,12 +198,13 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
     struct dig_curve_set *const made           = memory;
     *made                                      = *set;
     made->approaches                           = NULL;
-    made->covariance                           = NULL;
     made->trajectories                         = slots;
     made->packings                             = (int *)(void *)(at + l.packings);
     made->curve                                = (struct dig_curve *)(void *)(at + l.curve);
     const struct dig_response **const own      = (const struct dig_response **)(void *)(at + l.own);
     struct dig_response *const        response = (struct dig_response *)(void *)(at + l.response);
+    struct dig_covariance *const covariance = (struct dig_covariance *)(void *)(at + l.covariance);
+    made->covariance                        = set->covariance != NULL ? covariance : NULL;
     for (size_t s = 0; s < slots; s++) {
         assert(slot[s].trajectory < set->trajectories);
         struct dig_approached_slot wanted   = slot[s];
@@ -210,6 +214,9 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
             measured = error[wanted.trajectory];
         } else if (!dig_approach_is_plain(&wanted.approach)) {
             dig_approach_error_measure(set, wanted.trajectory, &measured);
+        }
+        if (set->covariance != NULL) {
+            covariance[s] = set->covariance[wanted.trajectory];
         }
         fill_slot(set, &wanted, &measured, s, response, own, made);
     }

@@ -104,6 +104,10 @@ enum dig_status dig_cell_at(const struct dig_curve_set *const set,
         found.curve[found.corners]  = &set->curve[slot];
         found.weight[found.corners] = weight;
         found.inverse_packings += weight / (double)set->packings[slot];
+        for (int c = 0; c < DIG_CHANNELS; c++) {
+            const double error = (double)set->curve[slot].error[c];
+            found.error2[c] += weight * error * error;
+        }
         found.mean_variance += weight * weight / (double)set->packings[slot];
         found.corners++;
     }
@@ -130,17 +134,23 @@ enum dig_status dig_cell_find(const struct dig_curve_set *const set,
 struct dig_cell dig_cell_of_entry(const struct dig_curve_set *const set, const size_t slot)
 {
     assert(set != NULL && set->packings[slot] > 0);
-    return (struct dig_cell){ .corners          = 1,
-                              .curve            = { &set->curve[slot] },
-                              .weight           = { 1.0 },
-                              .inverse_packings = 1.0 / (double)set->packings[slot],
-                              .mean_variance    = 1.0 / (double)set->packings[slot] };
+    struct dig_cell cell = { .corners          = 1,
+                             .curve            = { &set->curve[slot] },
+                             .weight           = { 1.0 },
+                             .inverse_packings = 1.0 / (double)set->packings[slot],
+                             .mean_variance    = 1.0 / (double)set->packings[slot] };
+    for (int c = 0; c < DIG_CHANNELS; c++) {
+        const double error = (double)set->curve[slot].error[c];
+        cell.error2[c]     = error * error;
+    }
+    return cell;
 }
 
 void dig_cell_curve(const struct dig_cell *const cell, struct dig_curve *const curve)
 {
     assert(cell != NULL && curve != NULL);
     for (int c = 0; c < DIG_CHANNELS; c++) {
+        curve->error[c] = (float)sqrt(cell->error2[c]);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             curve->mean[c][k] = (float)dig_cell_mean(cell, (enum dig_channel)c, k);
             curve->sd[c][k]   = (float)dig_cell_sd(cell, (enum dig_channel)c, k);

@@ -20,6 +20,7 @@ struct dig_cell {
     const struct dig_curve *curve[DIG_CELL_CORNERS];
     double                  weight[DIG_CELL_CORNERS];
     double                  inverse_packings; // weighted mean of 1 / packings
+    double error2[DIG_CHANNELS];              // weighted mean of the squares of the curves' errors
     double mean_variance; // of the mean, in variances of one dig: sum of weight^2 / packings
 };
 

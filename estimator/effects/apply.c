@@ -29,10 +29,15 @@ enum dig_status dig_effects_correction(const struct dig_model *const model,
 static void add(const struct dig_template *const added, struct dig_curve *const curve)
 {
     for (int c = 0; c < DIG_CHANNELS; c++) {
+        const double error  = (double)curve->error[c];
+        double       error2 = error * error * dig_curve_mean_square(curve->mean[c]);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             curve->mean[c][k] = (float)((double)curve->mean[c][k] + added->delta[c][k]);
             curve->sd[c][k]   = (float)hypot((double)curve->sd[c][k], added->sigma[c][k]);
+            error2 += added->sigma[c][k] * added->sigma[c][k] / DIG_CURVE_POINTS;
         }
+        const double mean2 = dig_curve_mean_square(curve->mean[c]);
+        curve->error[c]    = mean2 > 0.0 ? (float)sqrt(error2 / mean2) : 0.0F;
     }
 }
 

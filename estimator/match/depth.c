@@ -5,9 +5,9 @@
 #include "estimator/approach/approached.h"
 #include "estimator/approach/approaches.h"
 #include "estimator/approach/laid.h"
+#include "estimator/match/likelihood.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
-#include "estimator/match/posterior.h"
 
 #include <assert.h>
 #include <math.h>
@@ -35,7 +35,8 @@ static double evidence_at(const struct dig_curve_set *const       set,
                           const struct dig_approached_slot *const slot, void *const memory,
                           const struct dig_pool_sums *const sums)
 {
-    return dig_posterior_evidence(dig_approached_make(set, 1, slot, error, memory), sums);
+    return dig_likelihood_evidence(dig_approached_make(set, 1, slot, error, memory),
+                                   &sums->group[0]);
 }
 
 static void look_at_all(const struct dig_curve_set *const set,

@@ -1,7 +1,6 @@
 #include "estimator/match/entry_scatter.h"
 
 #include "core/units.h"
-#include "estimator/match/posterior.h"
 
 #include <assert.h>
 #include <math.h>
@@ -70,8 +69,8 @@ void dig_entry_scatter_draw(const struct dig_entry_scatter *const scatter, uint6
 static double of_channels(const double v[const DIG_FORCE_CHANNELS])
 {
     return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] +
-           2.0 * (DIG_POSTERIOR_MY_FX * v[0] * v[1] + DIG_POSTERIOR_MY_FZ * v[0] * v[2] +
-                  DIG_POSTERIOR_FX_FZ * v[1] * v[2]);
+           2.0 * (DIG_ENTRY_SCATTER_MY_FX * v[0] * v[1] + DIG_ENTRY_SCATTER_MY_FZ * v[0] * v[2] +
+                  DIG_ENTRY_SCATTER_FX_FZ * v[1] * v[2]);
 }
 
 double dig_entry_scatter_variance(const struct dig_entry_scatter *const scatter,

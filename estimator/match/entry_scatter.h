@@ -4,7 +4,7 @@
 //
 //   r(s, s') = (1 - shared) exp(-(s - s')^2 / (2 l^2)) + shared        along one channel
 //
-// and between channels the correlations of estimator/match/posterior.h times that. The table's
+// and between channels the correlations below times that. The table's
 // packings show this shape (tests/estimator/test_entry_scatter.c).
 //
 //   white knots, l apart -> sums under exp(-(s - knot)^2 / l^2), normalised -> a dig's error
@@ -28,6 +28,13 @@
 /// Share of a dig's error that is constant along it: the table's packings are correlated by 0.03 to
 /// 0.06 where points are more than half a bucket length apart.
 #define DIG_ENTRY_SCATTER_SHARED 0.04
+
+/// Correlation of the errors of moment and forces of one dig, point by point: over ten packings
+/// each of three gravels and three trajectories (tables/reference_rig.sqlite;
+/// tests/estimator/test_force_correlation.c).
+#define DIG_ENTRY_SCATTER_MY_FX (-0.93)
+#define DIG_ENTRY_SCATTER_MY_FZ 0.63
+#define DIG_ENTRY_SCATTER_FX_FZ (-0.49)
 
 /// Of one trajectory; 20 kB.
 struct dig_entry_scatter {

@@ -2,11 +2,11 @@
 
 #include "core/units.h"
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/posterior.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 enum {
     BLOCKS   = DIG_COVARIANCE_BLOCKS,
@@ -17,10 +17,13 @@ enum {
 };
 _Static_assert(HALVES == 2 * BLOCKS, "a block is two of an outline's");
 
-// Shrinkage of C towards correlations that depend on the distance of two blocks alone, and a factor
-// on these that keeps it positive definite.
-static const double towards_even   = 0.25;
+// Correlations that depend on the distance of two blocks alone are worth so many degrees of freedom
+// against those of the packings, and a factor on them that keeps C positive definite.
+static const double even_freedom   = 69.0;
 static const double even_reduction = 0.95;
+
+// Degrees of freedom the packings' covariance needs: one for each number.
+static const double least_freedom = NUMBERS;
 
 // Share of a number's variance that is independent of all others.
 static const double own_share = 0.05;
@@ -52,6 +55,7 @@ static double mean_at_lag(const struct matrix *const c, const size_t one, const 
 // Correlations of the table's packings.
 static void take_correlation(const struct dig_covariance *const covariance, struct matrix *const c)
 {
+    const double  towards_even = even_freedom / (even_freedom + covariance->freedom);
     struct matrix plain;
     for (size_t i = 0; i < NUMBERS; i++) {
         for (size_t j = 0; j < NUMBERS; j++) {
@@ -87,9 +91,9 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
                                double variance[NUMBERS])
 {
     const double across[CHANNELS][CHANNELS] = {
-        { 1.0, DIG_POSTERIOR_MY_FX, DIG_POSTERIOR_MY_FZ },
-        { DIG_POSTERIOR_MY_FX, 1.0, DIG_POSTERIOR_FX_FZ },
-        { DIG_POSTERIOR_MY_FZ, DIG_POSTERIOR_FX_FZ, 1.0 },
+        { 1.0, DIG_ENTRY_SCATTER_MY_FX, DIG_ENTRY_SCATTER_MY_FZ },
+        { DIG_ENTRY_SCATTER_MY_FX, 1.0, DIG_ENTRY_SCATTER_FX_FZ },
+        { DIG_ENTRY_SCATTER_MY_FZ, DIG_ENTRY_SCATTER_FX_FZ, 1.0 },
     };
     const struct dig_trajectory *const t = &set->trajectory[trajectory];
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
@@ -99,11 +103,13 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     for (int lag = 0; lag < BLOCKS; lag++) {
         lag_of[lag] = between(point_m, width_m, lag);
     }
+    if (prefilter != NULL) {
+        memcpy(variance, prefilter->relative2[trajectory], NUMBERS * sizeof *variance);
+    } else {
+        dig_prefilter_relative2(set, trajectory, variance);
+    }
     for (size_t i = 0; i < NUMBERS; i++) {
-        const enum dig_channel channel = (enum dig_channel)(i / BLOCKS);
-        variance[i] =
-            lag_of[0] * (prefilter != NULL ? prefilter->relative2[trajectory][channel]
-                                           : dig_prefilter_relative2(set, trajectory, channel));
+        variance[i] *= lag_of[0];
         for (size_t j = 0; j < NUMBERS; j++) {
             const size_t one   = i % BLOCKS;
             const size_t other = j % BLOCKS;
@@ -211,10 +217,9 @@ static void measure(const struct dig_pooled *const group, const double variance[
     }
 }
 
-bool dig_gaussian_make(const struct dig_curve_set *const set,
+void dig_gaussian_make(const struct dig_curve_set *const set,
                        const struct dig_prefilter *const prefilter,
-                       const struct dig_pooled *const group, const bool assume,
-                       struct dig_gaussian *const g)
+                       const struct dig_pooled *const group, struct dig_gaussian *const g)
 {
     assert(set != NULL && (prefilter == NULL || prefilter->set == set) && group != NULL &&
            g != NULL);
@@ -223,22 +228,18 @@ bool dig_gaussian_make(const struct dig_curve_set *const set,
                                 .channels   = group->forces ? CHANNELS : 1 };
     struct matrix c;
     double        variance[NUMBERS];
-    if (set->covariance != NULL &&
-        set->covariance[group->trajectory].freedom >= DIG_GAUSSIAN_FREEDOM) {
+    if (set->covariance != NULL && set->covariance[group->trajectory].freedom >= least_freedom) {
         take_correlation(&set->covariance[group->trajectory], &c);
         for (size_t i = 0; i < NUMBERS; i++) {
             variance[i] = set->covariance[group->trajectory].of[i][i];
         }
-    } else if (assume) {
-        assume_correlation(set, group->trajectory, prefilter, &c, variance);
     } else {
-        return false;
+        assume_correlation(set, group->trajectory, prefilter, &c, variance);
     }
     measure(group, variance, g);
     if (g->numbers > 0 && !factor(&c, g)) {
         g->numbers = 0;
     }
-    return g->numbers > 0;
 }
 
 // Means of the cell over an outline's blocks.
@@ -297,16 +298,17 @@ static void predict_numbers(const struct dig_gaussian *const g, const struct dig
         const struct dig_compared *const n = &g->compared[i];
         const double *const              t = &mean[n->channel][2 * n->block];
         there[i].mean = n->first && n->second ? 0.5 * (t[0] + t[1]) : n->first ? t[0] : t[1];
-        there[i].u2 =
-            size2[n->channel] * n->spread * n->spread * (n->inverse_digs + cell->inverse_packings) +
-            n->sigma2 + least_u2;
+        there[i].u2   = size2[n->channel] *
+                          (n->spread * n->spread * (n->inverse_digs + cell->inverse_packings) +
+                           cell->error2[n->channel]) +
+                      n->sigma2 + least_u2;
     }
 }
 
 struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const g,
                                                 const struct dig_cell *const     cell)
 {
-    assert(g != NULL && g->numbers > 0 && cell != NULL);
+    assert(g != NULL && cell != NULL);
     struct there there[NUMBERS];
     double       miss[NUMBERS];
     double       mantissa = 1.0;
@@ -330,6 +332,12 @@ struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const
         misses.square += miss[i] * miss[i];
     }
     return misses;
+}
+
+double dig_gaussian_log(const struct dig_gaussian *const g, const struct dig_cell *const cell)
+{
+    const struct dig_mahalanobis all = dig_gaussian_mahalanobis(g, cell);
+    return -0.5 * DIG_GAUSSIAN_TRUST * (all.square + all.log_det);
 }
 
 void dig_gaussian_scale(const struct dig_gaussian *const g, const struct dig_cell *const cell,

@@ -5,12 +5,17 @@
 // mean of n packings. With the size a of each channel's curve there, S the covariance and
 // C_ij = S_ij / sqrt(S_ii S_jj),
 //
-//   q = (x - t)' D^-1 (x - t),   D_ij = u_i u_j C_ij,   u_i^2 = a^2 S_ii (1/d + 1/n) + sigma_i^2 /
-//   d
+//   q = (x - t)' D^-1 (x - t),   D_ij = u_i u_j C_ij,
+//   u_i^2 = a^2 (S_ii (1/d + 1/n) + e^2) + sigma_i^2 / d
 //
-// and -log L = q / 2 + log det D / 2. Measurement errors are uncorrelated: off the diagonal C
-// shrinks by their share, for digs as large as those measured. C is shrunk a little towards its
-// mean over blocks equally far apart, and gets a share of independent variance on the diagonal.
+// and -log L = q / 2 + log det D / 2. e is what the table's curve errs by beyond its packings'
+// scatter (struct dig_curve). Measurement errors are uncorrelated: off the diagonal C shrinks by
+// their share, for digs as large as those measured. C is shrunk towards its mean over blocks
+// equally far apart, the more the fewer packings it is from, and gets a share of independent
+// variance on the diagonal. Of too few packings S is that of entry_scatter.h, with the table's
+// pooled spread.
+//
+// Parts that are common to all digs, of the table, do not average down with their number.
 
 #ifndef DIG_ESTIMATOR_MATCH_GAUSSIAN_H
 #define DIG_ESTIMATOR_MATCH_GAUSSIAN_H
@@ -22,8 +27,9 @@
 
 #include <stdbool.h>
 
-/// Degrees of freedom a table's own covariance needs: several for each number compared.
-#define DIG_GAUSSIAN_FREEDOM (4.0 * DIG_COVARIANCE_NUMBERS)
+/// Weight of the logarithm of this likelihood: the covariance and the curves between the table's
+/// points are less certain than it assumes.
+#define DIG_GAUSSIAN_TRUST 0.7
 
 /// Of the digs along one trajectory; does not depend on the gravel. 6 kB.
 struct dig_gaussian {
@@ -40,12 +46,11 @@ struct dig_gaussian {
     double lower[DIG_COVARIANCE_NUMBERS][DIG_COVARIANCE_NUMBERS];
 };
 
-/// False, and *gaussian is not usable, when no half of a block was measured completely, or the set
-/// has no covariance of the trajectory with DIG_GAUSSIAN_FREEDOM degrees of freedom. With assume
-/// such a set gets the covariance of entry_scatter.h, with the table's pooled spread. The set, and
-/// the prefilter of it where one is given, must outlive it. 30 microseconds.
-bool dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
-                       const struct dig_pooled *group, bool assume, struct dig_gaussian *gaussian);
+/// Compares nothing (numbers is 0) when no half of a block was measured completely. The set, and
+/// the prefilter of it where one is given, must outlive it. 30 microseconds; of few packings and
+/// without a prefilter it reads every curve of the trajectory.
+void dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
+                       const struct dig_pooled *group, struct dig_gaussian *gaussian);
 
 /// Squared Mahalanobis distance of digs from a cell of the trajectory.
 struct dig_mahalanobis {
@@ -53,9 +58,12 @@ struct dig_mahalanobis {
     double log_det; // of D, up to a constant
 };
 
-/// About a microsecond.
+/// About a microsecond with a prefilter, four without.
 struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *gaussian,
                                                 const struct dig_cell     *cell);
+
+/// log L at a cell, tempered by DIG_GAUSSIAN_TRUST, up to a constant. The same cost.
+double dig_gaussian_log(const struct dig_gaussian *gaussian, const struct dig_cell *cell);
 
 /// The u_i of a cell.
 void dig_gaussian_scale(const struct dig_gaussian *gaussian, const struct dig_cell *cell,

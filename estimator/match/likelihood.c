@@ -1,6 +1,7 @@
 #include "estimator/match/likelihood.h"
 
-#include "estimator/match/posterior.h"
+#include "estimator/match/entry_scatter.h"
+#include "estimator/match/prefilter.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,7 +9,9 @@
 // Loops over points go by strides of this length, counted from 0 and over arrays that are restrict:
 // then compilers work on several points at once.
 enum { STRIDE = 16 };
-_Static_assert(DIG_CURVE_POINTS % STRIDE == 0 && DIG_OUTLINE_BLOCKS % STRIDE == 0, "whole strides");
+enum { COARSE = 9, COARSE_DENSITY = 7 }; // points of an axis
+enum { ALL_COARSE = COARSE * COARSE * COARSE_DENSITY, NUMBERS = DIG_COVARIANCE_NUMBERS };
+_Static_assert(DIG_CURVE_POINTS % STRIDE == 0, "whole strides");
 
 // Weight of the pooled spread against an entry's own, in packings.
 static const double pooled_weight = 4.0;
@@ -21,33 +24,11 @@ static const double least_d = 1e-40;
 
 static const double ln_2 = 0.69314718055994530942;
 
-// Mean and variance of one dig, point by point or block by block, of one channel at one gravel.
+// Mean and variance of one dig, point by point, of one channel at one gravel.
 struct channel_curve {
     double mean[DIG_CURVE_POINTS];
     double spread2[DIG_CURVE_POINTS];
 };
-
-static void blend_outlines(const struct dig_prefilter *const prefilter,
-                           const struct dig_cell *const cell, const size_t channel, double mean[],
-                           double sd[])
-{
-    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
-        mean[b] = 0.0;
-        sd[b]   = 0.0;
-    }
-    for (size_t c = 0; c < cell->corners; c++) {
-        const size_t       slot    = (size_t)(cell->curve[c] - prefilter->set->curve);
-        const double       weight  = cell->weight[c];
-        const float *const mean_of = dig_outline_mean(prefilter, channel, slot);
-        const float *const sd_of   = dig_outline_sd(prefilter, channel, slot);
-        for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
-            mean[b] += weight * (double)mean_of[b];
-        }
-        for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
-            sd[b] += weight * (double)sd_of[b];
-        }
-    }
-}
 
 static void make_curve(const struct dig_likelihood *const restrict l,
                        const struct dig_cell *const cell, const size_t channel,
@@ -55,23 +36,19 @@ static void make_curve(const struct dig_likelihood *const restrict l,
 {
     const double own    = fmax(1.0 / cell->inverse_packings - 1.0, 0.0);
     const double shared = pooled_weight / (pooled_weight + own);
-    if (l->rough != NULL) {
-        blend_outlines(l->rough, cell, channel, curve->mean, curve->spread2);
-    } else {
-        dig_cell_blend(cell, (enum dig_channel)channel, curve->mean, curve->spread2);
-    }
+    dig_cell_blend(cell, (enum dig_channel)channel, curve->mean, curve->spread2);
 
     double mean2 = 0.0;
-    for (size_t k = 0; k < l->count; k += 4) {
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k += 4) {
         double four[4];
         for (size_t i = 0; i < 4; i++) {
             four[i] = l->measured[k + i] * curve->mean[k + i] * curve->mean[k + i];
         }
         mean2 += (four[0] + four[1]) + (four[2] + four[3]);
     }
-    const double relative2 = l->relative2[channel];
+    const double relative2 = l->relative2[channel] + cell->error2[channel];
     const double floor2    = least_spread * least_spread * relative2 * mean2 / l->measured_count;
-    for (size_t from = 0; from < l->count; from += STRIDE) {
+    for (size_t from = 0; from < DIG_CURVE_POINTS; from += STRIDE) {
         for (size_t i = 0; i < STRIDE; i++) {
             const size_t k       = from + i;
             const double sd      = curve->spread2[k];
@@ -115,8 +92,8 @@ static double sum_up(const size_t count, const double miss2[], const double d[])
     return sum + log_of(&product);
 }
 
-// Normalised misses squared and determinants, point by point or block by block. Where nothing was
-// measured the miss is 0 and the variance 1.
+// Normalised misses squared and determinants, point by point. Where nothing was measured the miss
+// is 0 and the variance 1.
 struct misses {
     double miss2[DIG_CURVE_POINTS];
     double d[DIG_CURVE_POINTS];
@@ -127,7 +104,7 @@ static void miss_moment(const struct dig_likelihood *const restrict l,
 {
     struct channel_curve moment;
     make_curve(l, cell, DIG_CHANNEL_MY_Nm, &moment);
-    for (size_t from = 0; from < l->count; from += STRIDE) {
+    for (size_t from = 0; from < DIG_CURVE_POINTS; from += STRIDE) {
         for (size_t i = 0; i < STRIDE; i++) {
             const size_t k       = from + i;
             const double widened = l->inverse_digs[k] + cell->inverse_packings;
@@ -147,9 +124,9 @@ static inline double joint2(const double miss[DIG_FORCE_CHANNELS], const double 
     const double s0  = sqrt(spread2[0]);
     const double s1  = sqrt(spread2[1]);
     const double s2  = sqrt(spread2[2]);
-    const double d01 = DIG_POSTERIOR_MY_FX * s0 * s1;
-    const double d02 = DIG_POSTERIOR_MY_FZ * s0 * s2;
-    const double d12 = DIG_POSTERIOR_FX_FZ * s1 * s2;
+    const double d01 = DIG_ENTRY_SCATTER_MY_FX * s0 * s1;
+    const double d02 = DIG_ENTRY_SCATTER_MY_FZ * s0 * s2;
+    const double d12 = DIG_ENTRY_SCATTER_FX_FZ * s1 * s2;
 
     const double e0  = spread2[0] + sigma2[0];
     const double l10 = d01 / e0;
@@ -170,7 +147,7 @@ static void miss_all(const struct dig_likelihood *const restrict l,
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         make_curve(l, cell, c, &curve[c]);
     }
-    for (size_t from = 0; from < l->count; from += STRIDE) {
+    for (size_t from = 0; from < DIG_CURVE_POINTS; from += STRIDE) {
         for (size_t i = 0; i < STRIDE; i++) {
             const size_t k         = from + i;
             const double widened   = l->inverse_digs[k] + cell->inverse_packings;
@@ -201,42 +178,22 @@ static void miss_by(const struct dig_likelihood *const l, const struct dig_cell 
 double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig_cell *const cell)
 {
     assert(l != NULL && cell != NULL);
-    if (l->is_gaussian) {
-        const struct dig_mahalanobis all = dig_gaussian_mahalanobis(&l->gaussian, cell);
-        return -0.5 * DIG_POSTERIOR_TRUST * (all.square + all.log_det);
-    }
     struct misses misses;
     miss_by(l, cell, &misses);
-    const double sum = sum_up(l->count, misses.miss2, misses.d);
+    const double sum = sum_up(DIG_CURVE_POINTS, misses.miss2, misses.d);
     return -0.5 * l->effective * sum / l->measured_count;
 }
 
-double dig_likelihood_reduced_chi2(const struct dig_likelihood *const l,
-                                   const struct dig_cell *const       cell)
-{
-    assert(l != NULL && cell != NULL);
-    struct misses misses;
-    miss_by(l, cell, &misses);
-    double sum = 0.0;
-    for (size_t k = 0; k < l->count; k++) {
-        sum += misses.miss2[k];
-    }
-    return sum / (l->measured_count * (double)l->channels);
-}
-
 void dig_likelihood_make(const struct dig_curve_set *const set,
-                         const struct dig_prefilter *const prefilter,
                          const struct dig_pooled *const group, struct dig_likelihood *const l)
 {
     assert(set != NULL && group != NULL && l != NULL);
-    *l             = (struct dig_likelihood){ .trajectory = group->trajectory,
-                                              .channels   = group->forces ? DIG_FORCE_CHANNELS : 1,
-                                              .count      = DIG_CURVE_POINTS };
-    l->is_gaussian = dig_gaussian_make(set, prefilter, group, false, &l->gaussian);
-    for (size_t c = 0; c < l->channels; c++) {
-        l->relative2[c] = prefilter != NULL ? prefilter->relative2[group->trajectory][c]
-                                            : dig_prefilter_relative2(set, group->trajectory,
-                                                                      (enum dig_channel)c);
+    *l = (struct dig_likelihood){ .trajectory = group->trajectory,
+                                  .channels   = group->forces ? DIG_FORCE_CHANNELS : 1 };
+    double relative2[NUMBERS];
+    dig_prefilter_relative2(set, group->trajectory, relative2);
+    for (size_t n = 0; n < NUMBERS; n++) {
+        l->relative2[n / DIG_COVARIANCE_BLOCKS] += relative2[n] / DIG_COVARIANCE_BLOCKS;
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double n = group->count[k];
@@ -255,43 +212,36 @@ void dig_likelihood_make(const struct dig_curve_set *const set,
     }
     const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
-    const double correlation_m = DIG_POSTERIOR_CORRELATION * set->tooth_m;
+    const double correlation_m = DIG_LIKELIHOOD_CORRELATION * set->tooth_m;
     const double share         = (l->measured_count - 1.0) / (DIG_CURVE_POINTS - 1);
     l->effective               = fmax(share * whole_m / correlation_m, 1.0);
 }
 
-static double mean_of_block(const double of[], const size_t block)
+double dig_likelihood_evidence(const struct dig_curve_set *const set,
+                               const struct dig_pooled *const    group)
 {
-    double sum = 0.0;
-    for (size_t i = 0; i < DIG_OUTLINE_POINTS; i++) {
-        sum += of[block * DIG_OUTLINE_POINTS + i];
-    }
-    return sum / DIG_OUTLINE_POINTS;
-}
-
-bool dig_likelihood_outline(const struct dig_prefilter *const prefilter,
-                            struct dig_likelihood *const      l)
-{
-    assert(prefilter != NULL && l != NULL && l->rough == NULL);
-    double whole = 0.0;
-    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
-        whole += mean_of_block(l->measured, b) < 1.0 ? 0.0 : 1.0;
-    }
-    if (whole * DIG_OUTLINE_POINTS < 0.5 * l->measured_count) {
-        return false;
-    }
-
-    // In place: a block's points lie behind all blocks before it.
-    for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
-        l->inverse_digs[b] = mean_of_block(l->inverse_digs, b);
-        for (size_t c = 0; c < l->channels; c++) {
-            l->mean[c][b]   = mean_of_block(l->mean[c], b);
-            l->sigma2[c][b] = mean_of_block(l->sigma2[c], b);
+    assert(set != NULL && group != NULL);
+    struct dig_likelihood l;
+    double                log_of[ALL_COARSE];
+    double                most = -INFINITY;
+    dig_likelihood_make(set, group, &l);
+    for (size_t i = 0; i < ALL_COARSE; i++) {
+        const size_t      of[DIG_AXES] = { i / COARSE_DENSITY / COARSE, i / COARSE_DENSITY % COARSE,
+                                           i % COARSE_DENSITY };
+        struct dig_gravel gravel;
+        struct dig_cell   cell;
+        for (int a = 0; a < DIG_AXES; a++) {
+            const double count = a == DIG_AXIS_DENSITY_kgpm3 ? COARSE_DENSITY : COARSE;
+            gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, ((double)of[a] + 0.5) / count);
         }
-        l->measured[b] = mean_of_block(l->measured, b) < 1.0 ? 0.0 : 1.0;
+        log_of[i] = dig_cell_find(set, &gravel, l.trajectory, &cell) == DIG_OK
+                        ? dig_likelihood_log(&l, &cell)
+                        : -(double)INFINITY;
+        most      = fmax(most, log_of[i]);
     }
-    l->rough          = prefilter;
-    l->count          = DIG_OUTLINE_BLOCKS;
-    l->measured_count = whole;
-    return true;
+    double sum = 0.0;
+    for (size_t i = 0; isfinite(most) && i < ALL_COARSE; i++) {
+        sum += exp(log_of[i] - most);
+    }
+    return most + log(sum / ALL_COARSE);
 }

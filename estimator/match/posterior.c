@@ -1,7 +1,7 @@
 #include "estimator/match/posterior.h"
 
 #include "estimator/approach/interpolate.h"
-#include "estimator/match/likelihood.h"
+#include "estimator/match/gaussian.h"
 #include "estimator/match/match.h"
 
 #include <assert.h>
@@ -9,11 +9,22 @@
 #include <stddef.h>
 
 enum { FINE = 25, FINE_DENSITY = 13, GRID_MAX = FINE * FINE * FINE_DENSITY };
-enum { COARSE = 9, COARSE_DENSITY = 7 };
 
-// A point whose log-likelihood by the outlines is this far below the greatest is skipped. All
-// skipped points together weigh less than a thousandth of the likeliest.
-static const double unlikely = 16.0;
+// Of the digs along each trajectory.
+struct likelihood {
+    size_t              groups;
+    struct dig_gaussian group[DIG_TRAJECTORY_MAX];
+};
+
+static void make_likelihood(const struct dig_curve_set *const set,
+                            const struct dig_prefilter *const prefilter,
+                            const struct dig_pool_sums *const sums, struct likelihood *const l)
+{
+    l->groups = sums->groups;
+    for (size_t g = 0; g < sums->groups; g++) {
+        dig_gaussian_make(set, prefilter, &sums->group[g], &l->group[g]);
+    }
+}
 
 double dig_posterior_excess(const struct dig_curve_set *const set,
                             const struct dig_prefilter *const prefilter,
@@ -21,20 +32,20 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
                             const struct dig_gravel *const    gravel)
 {
     assert(set != NULL && sums != NULL && gravel != NULL);
-    double errors = 0.0; // independent ones, of all trajectories and channels
-    double miss2  = 0.0; // mean of a trajectory, as often as it has such
+    double numbers = 0.0;
+    double square  = 0.0;
     for (size_t g = 0; g < sums->groups; g++) {
-        struct dig_likelihood l;
-        struct dig_cell       cell;
-        dig_likelihood_make(set, prefilter, &sums->group[g], &l);
-        if (dig_cell_find(set, gravel, l.trajectory, &cell) != DIG_OK) {
+        struct dig_gaussian one;
+        struct dig_cell     cell;
+        dig_gaussian_make(set, prefilter, &sums->group[g], &one);
+        if (dig_cell_find(set, gravel, one.trajectory, &cell) != DIG_OK) {
             return INFINITY;
         }
-        const double own = (double)l.channels * l.effective;
-        errors += own;
-        miss2 += own * dig_likelihood_reduced_chi2(&l, &cell);
+        numbers += (double)one.numbers;
+        square += dig_gaussian_mahalanobis(&one, &cell).square;
     }
-    return (miss2 / errors - 1.0) * sqrt(0.5 * errors);
+    const double rough = 2.0 / (9.0 * numbers);
+    return numbers > 0.0 ? (cbrt(square / numbers) - (1.0 - rough)) / sqrt(rough) : 0.0;
 }
 
 // A grid: points are centres of equal intervals of each axis's position. What belongs to a
@@ -101,7 +112,7 @@ static struct dig_gravel gravel_at(const struct grid *const grid, const size_t p
 // Of all digs at one point; -infinity where the table has no curve.
 static double log_likelihood_at(const struct dig_curve_set *const set,
                                 const struct grid *const grid, const size_t point,
-                                const size_t groups, const struct dig_likelihood l[])
+                                const struct likelihood *const l)
 {
     const struct indices     at = indices_of(grid, point);
     struct dig_axis_interval place[DIG_AXES];
@@ -109,12 +120,12 @@ static double log_likelihood_at(const struct dig_curve_set *const set,
         place[a] = grid->place[a][at.on[a]];
     }
     double sum = 0.0;
-    for (size_t g = 0; g < groups; g++) {
+    for (size_t g = 0; g < l->groups; g++) {
         struct dig_cell cell;
-        if (dig_cell_at(set, place, l[g].trajectory, &cell) != DIG_OK) {
+        if (dig_cell_at(set, place, l->group[g].trajectory, &cell) != DIG_OK) {
             return -INFINITY;
         }
-        sum += dig_likelihood_log(&l[g], &cell);
+        sum += dig_gaussian_log(&l->group[g], &cell);
     }
     return sum;
 }
@@ -179,55 +190,6 @@ static void draw_samples(const struct grid *const grid, const double weight[],
     match->samples = DIG_MATCH_SAMPLES;
 }
 
-// Marks the points to evaluate by 0, others by -infinity; all without a prefilter.
-static void mark_likely(const struct dig_curve_set *const set,
-                        const struct dig_prefilter *const prefilter,
-                        const struct dig_pool_sums *const sums, const struct grid *const grid,
-                        struct dig_likelihood l[], double weight[])
-{
-    bool rough = prefilter != NULL;
-    bool dear  = false; // more than the rough look
-    for (size_t g = 0; rough && g < sums->groups; g++) {
-        dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
-        dear  = dear || !l[g].is_gaussian;
-        rough = l[g].is_gaussian || dig_likelihood_outline(prefilter, &l[g]);
-    }
-    rough       = rough && dear;
-    double most = -INFINITY;
-    for (size_t i = 0; i < grid->all; i++) {
-        weight[i] = rough ? log_likelihood_at(set, grid, i, sums->groups, l) : 0.0;
-        most      = fmax(most, weight[i]);
-    }
-    for (size_t i = 0; i < grid->all; i++) {
-        weight[i] = weight[i] < most - unlikely ? -(double)INFINITY : 0.0;
-    }
-}
-
-double dig_posterior_evidence(const struct dig_curve_set *const set,
-                              const struct dig_pool_sums *const sums)
-{
-    assert(set != NULL && sums != NULL);
-    struct grid           coarse;
-    struct dig_likelihood l[DIG_TRAJECTORY_MAX];
-    double                log_of[COARSE * COARSE * COARSE_DENSITY];
-    double                most = -INFINITY;
-    if (make_grid(set, COARSE, COARSE_DENSITY, &coarse) != DIG_OK) {
-        return -INFINITY;
-    }
-    for (size_t g = 0; g < sums->groups; g++) {
-        dig_likelihood_make(set, NULL, &sums->group[g], &l[g]);
-    }
-    for (size_t i = 0; i < coarse.all; i++) {
-        log_of[i] = log_likelihood_at(set, &coarse, i, sums->groups, l);
-        most      = fmax(most, log_of[i]);
-    }
-    double sum = 0.0;
-    for (size_t i = 0; isfinite(most) && i < coarse.all; i++) {
-        sum += exp(log_of[i] - most);
-    }
-    return most + log(sum / (double)coarse.all);
-}
-
 enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
                                    const struct dig_prefilter *const prefilter,
                                    const struct dig_pool_sums *const sums,
@@ -238,19 +200,13 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     if (make_grid(set, FINE, FINE_DENSITY, &grid) != DIG_OK) {
         return DIG_ENOMATCH;
     }
-    struct dig_likelihood l[DIG_TRAJECTORY_MAX];
-    double                weight[GRID_MAX];
-    mark_likely(set, prefilter, sums, &grid, l, weight);
-
-    for (size_t g = 0; g < sums->groups; g++) {
-        dig_likelihood_make(set, prefilter, &sums->group[g], &l[g]);
-    }
-    double most = -INFINITY;
+    struct likelihood l;
+    double            weight[GRID_MAX];
+    double            most = -INFINITY;
+    make_likelihood(set, prefilter, sums, &l);
     for (size_t i = 0; i < grid.all; i++) {
-        if (!(weight[i] < 0.0)) {
-            weight[i] = log_likelihood_at(set, &grid, i, sums->groups, l);
-        }
-        most = fmax(most, weight[i]);
+        weight[i] = log_likelihood_at(set, &grid, i, &l);
+        most      = fmax(most, weight[i]);
     }
     if (!isfinite(most)) {
         return DIG_ENOMATCH;

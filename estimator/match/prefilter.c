@@ -3,27 +3,42 @@
 #include <assert.h>
 #include <math.h>
 
-double dig_prefilter_relative2(const struct dig_curve_set *const set, const size_t trajectory,
-                               const enum dig_channel channel)
+enum { NUMBERS = DIG_COVARIANCE_NUMBERS };
+
+// Adds those of one channel of a curve. Each entry counts alike, however hard it resists.
+static void add_relative2(const struct dig_curve *const curve, const size_t channel,
+                          const double share, double relative2[const DIG_COVARIANCE_BLOCKS])
+{
+    enum { WIDE = DIG_CURVE_POINTS / DIG_COVARIANCE_BLOCKS };
+    const double mean2 = dig_curve_mean_square(curve->mean[channel]);
+    const double error = (double)curve->error[channel];
+    for (size_t b = 0; b < DIG_COVARIANCE_BLOCKS && mean2 > 0.0; b++) {
+        double sum = 0.0;
+        for (size_t k = b * WIDE; k < (b + 1) * WIDE; k++) {
+            sum += (double)curve->sd[channel][k] * (double)curve->sd[channel][k];
+        }
+        relative2[b] += share * fmax(sum / WIDE / mean2 - error * error, 0.0);
+    }
+}
+
+void dig_prefilter_relative2(const struct dig_curve_set *const set, const size_t trajectory,
+                             double relative2[const NUMBERS])
 {
     assert(set != NULL && trajectory < set->trajectories);
-    double sum     = 0.0;
     double entries = 0.0;
     for (size_t e = 0; e < set->entries; e++) {
+        entries += set->packings[e * set->trajectories + trajectory] > 0 ? 1.0 : 0.0;
+    }
+    for (size_t n = 0; n < NUMBERS; n++) {
+        relative2[n] = 0.0;
+    }
+    for (size_t e = 0; e < set->entries; e++) {
         const size_t slot = e * set->trajectories + trajectory;
-        if (set->packings[slot] <= 0) {
-            continue;
-        }
-        const struct dig_curve *const curve = &set->curve[slot];
-
-        // Each entry counts alike, however hard it resists.
-        const double mean2 = dig_curve_mean_square(curve->mean[channel]);
-        if (mean2 > 0.0) {
-            sum += dig_curve_mean_square(curve->sd[channel]) / mean2;
-            entries += 1.0;
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS && set->packings[slot] > 0; c++) {
+            add_relative2(&set->curve[slot], c, 1.0 / entries,
+                          &relative2[c * DIG_COVARIANCE_BLOCKS]);
         }
     }
-    return entries > 0.0 ? sum / entries : 0.0;
 }
 
 void dig_outline_draw(const float of[const DIG_CURVE_POINTS], struct dig_outline *const outline)
@@ -48,7 +63,7 @@ static void draw_none(struct dig_outline *const outline)
 size_t dig_prefilter_outlines(const struct dig_curve_set *const set)
 {
     assert(set != NULL);
-    return DIG_OUTLINE_LAYERS * set->entries * set->trajectories;
+    return DIG_FORCE_CHANNELS * set->entries * set->trajectories;
 }
 
 void dig_prefilter_make(const struct dig_curve_set *const set, struct dig_outline outline[],
@@ -57,12 +72,10 @@ void dig_prefilter_make(const struct dig_curve_set *const set, struct dig_outlin
     assert(set != NULL && outline != NULL && prefilter != NULL);
     const size_t curves = set->entries * set->trajectories;
     for (size_t slot = 0; slot < curves; slot++) {
-        for (size_t layer = 0; layer < DIG_OUTLINE_LAYERS; layer++) {
-            struct dig_outline *const     to    = &outline[dig_outline_place(set, layer, slot)];
-            const struct dig_curve *const curve = &set->curve[slot];
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            struct dig_outline *const to = &outline[dig_outline_place(set, c, slot)];
             if (set->packings[slot] > 0) {
-                dig_outline_draw(layer % 2 == 0 ? curve->mean[layer / 2] : curve->sd[layer / 2],
-                                 to);
+                dig_outline_draw(set->curve[slot].mean[c], to);
             } else {
                 draw_none(to);
             }
@@ -70,8 +83,6 @@ void dig_prefilter_make(const struct dig_curve_set *const set, struct dig_outlin
     }
     *prefilter = (struct dig_prefilter){ .set = set, .outline = outline };
     for (size_t t = 0; t < set->trajectories; t++) {
-        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            prefilter->relative2[t][c] = dig_prefilter_relative2(set, t, (enum dig_channel)c);
-        }
+        dig_prefilter_relative2(set, t, prefilter->relative2[t]);
     }
 }

@@ -118,7 +118,8 @@ struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
     struct search s       = { .set = set, .prefilter = prefilter, .groups = sums->groups };
     double        numbers = 0.0;
     for (size_t g = 0; g < sums->groups; g++) {
-        if (!dig_gaussian_make(set, prefilter, &sums->group[g], true, &s.group[g].gaussian)) {
+        dig_gaussian_make(set, prefilter, &sums->group[g], &s.group[g].gaussian);
+        if (s.group[g].gaussian.numbers == 0) {
             return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
         }
         whiten(set, nearest, &s.group[g]);

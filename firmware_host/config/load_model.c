@@ -90,11 +90,6 @@ static enum dig_status change_curves(const char *const model_path, const char *c
                             "effects: an effect of the soil that no table at hand tells, or a "
                             "parameter it does not have; expected those of the table of effects");
     }
-    if (status == DIG_OK) {
-        // The covariance is of plain digs; the templates' error is in the curves' sd.
-        free(set->covariance);
-        set->covariance = NULL;
-    }
     if (status == DIG_OK && plain != NULL) {
         change_approaches(plain, set);
     }

@@ -1,15 +1,15 @@
 // How well a posterior knows what it says: each dig of a gravel that was dug more than once against
 // the table without that dig, and recordings of LIGGGHTS, whose gravel their names tell. By the
-// packings' covariance, where the table has one to be believed, and without it. Of each: the
-// logarithm of how much denser the posterior is at the true gravel than where nothing is known, the
-// share of digs whose gravel is in the 90 % interval of friction, rolling friction and density
+// packings' covariance, where the table has one to be believed, and by the assumed one. Of each:
+// the logarithm of how much denser the posterior is at the true gravel than where nothing is known,
+// the share of digs whose gravel is in the 90 % interval of friction, rolling friction and density
 // (where the truth is no end of the axis), and the root mean square of what the mean is off by, as
 // a share of the axis.
 //
 //   calibration TABLE.sqlite TRAJECTORY [RECORDING.csv…]     RECORDING: mu0.3_mur0.3_rho2500….csv
 
 #include "closed_loop/recordings/observe.h"
-#include "estimator/match/likelihood.h"
+#include "estimator/match/gaussian.h"
 #include "estimator/match/pool.h"
 #include "files/recording_csv.h"
 #include "tests/table_runs.h"
@@ -36,10 +36,10 @@ struct bench {
 static void weigh(const struct dig_curve_set *const set, const struct dig_observation *const dig,
                   double weight[GRID])
 {
-    static struct dig_pool_sums  sums;
-    static struct dig_likelihood l;
+    static struct dig_pool_sums sums;
+    static struct dig_gaussian  likelihood;
     dig_pool_sum(1, dig, &sums);
-    dig_likelihood_make(set, NULL, &sums.group[0], &l);
+    dig_gaussian_make(set, NULL, &sums.group[0], &likelihood);
     double most = -INFINITY, sum = 0.0;
     for (int i = 0; i < GRID; i++) {
         const int         at[DIG_AXES] = { i / FINE_DENSITY / FINE, i / FINE_DENSITY % FINE,
@@ -50,7 +50,7 @@ static void weigh(const struct dig_curve_set *const set, const struct dig_observ
             gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, (at[a] + 0.5) / fine[a]);
         }
         weight[i] = dig_cell_find(set, &gravel, (size_t)dig->trajectory, &cell) == DIG_OK
-                        ? dig_likelihood_log(&l, &cell)
+                        ? dig_gaussian_log(&likelihood, &cell)
                         : -(double)INFINITY;
         most      = fmax(most, weight[i]);
     }
@@ -220,7 +220,7 @@ static void print(const struct bench *const b, const char *const what)
         const struct score *const s = &b->score[way / 2][way % 2];
         (void)printf("%-10s %-17s %-10s %3d digs, score %5.2f, in the interval", what,
                      way / 2 == 1 ? "moment and forces" : "moment",
-                     way % 2 == 1 ? "covariance" : "as before", s->digs, s->log / s->digs);
+                     way % 2 == 1 ? "packings" : "assumed", s->digs, s->log / s->digs);
         for (int a = 0; a < DIG_AXES; a++) {
             (void)printf(" %3d of %3d", s->inside[a], s->asked[a]);
         }

@@ -16,7 +16,7 @@
 
 #include "estimator/match/match.h"
 #include "estimator/approach/interpolate.h"
-#include "estimator/match/posterior.h"
+#include "estimator/match/entry_scatter.h"
 #include "estimator/match/prefilter.h"
 #include "tables/load.h"
 
@@ -83,9 +83,9 @@ static void draw(uint64_t *const seed, double out[DIG_CURVE_POINTS])
 // Errors of moment and forces in standard deviations, correlated as packings are.
 static void draw_errors(uint64_t *const seed, double error[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
-    const double l10 = DIG_POSTERIOR_MY_FX, l20 = DIG_POSTERIOR_MY_FZ;
+    const double l10 = DIG_ENTRY_SCATTER_MY_FX, l20 = DIG_ENTRY_SCATTER_MY_FZ;
     const double l11 = sqrt(1.0 - l10 * l10);
-    const double l21 = (DIG_POSTERIOR_FX_FZ - l10 * l20) / l11;
+    const double l21 = (DIG_ENTRY_SCATTER_FX_FZ - l10 * l20) / l11;
     const double l22 = sqrt(1.0 - l20 * l20 - l21 * l21);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         draw(seed, error[c]);

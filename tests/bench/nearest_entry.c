@@ -8,7 +8,7 @@
 //
 //   nearest_entry TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY
 
-#include "estimator/match/likelihood.h"
+#include "estimator/match/gaussian.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
 #include "tests/table_runs.h"
@@ -37,10 +37,10 @@ static size_t slot_of(const struct bench *const b, const size_t entry, const siz
 
 static size_t likeliest(const struct bench *const b, const struct dig_observation *const dig)
 {
-    static struct dig_pool_sums  sums;
-    static struct dig_likelihood likelihood;
+    static struct dig_pool_sums sums;
+    static struct dig_gaussian  likelihood;
     dig_pool_sum(1, dig, &sums);
-    dig_likelihood_make(b->all.set, NULL, &sums.group[0], &likelihood);
+    dig_gaussian_make(b->all.set, NULL, &sums.group[0], &likelihood);
     size_t best = 0;
     double most = -INFINITY;
     for (size_t e = 0; e < b->all.set->entries; e++) {
@@ -48,7 +48,7 @@ static size_t likeliest(const struct bench *const b, const struct dig_observatio
         if (dig_cell_find(b->all.set, &b->all.set->gravel[e], b->all.trajectory, &cell) != DIG_OK) {
             continue;
         }
-        const double log = dig_likelihood_log(&likelihood, &cell);
+        const double log = dig_gaussian_log(&likelihood, &cell);
         best             = log > most ? e : best;
         most             = fmax(log, most);
     }

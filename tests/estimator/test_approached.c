@@ -76,16 +76,16 @@ static void what_is_linear_is_met_everywhere_in_a_cross(void **state)
 {
     (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, straight, 0.05, 3);
-    static const double          at[][2] = { { 1.07, 0.0 }, { 0.9, 0.0 },   { 1.0, 3.0 },
-                                             { 1.05, 2.0 }, { 0.93, -1.0 }, { 1.15, 0.0 } };
-    static struct dig_covariance of_plain_digs[2];
-    table.cube.set.covariance = of_plain_digs;
+    static const double          at[][2]          = { { 1.07, 0.0 }, { 0.9, 0.0 },   { 1.0, 3.0 },
+                                                      { 1.05, 2.0 }, { 0.93, -1.0 }, { 1.15, 0.0 } };
+    static struct dig_covariance of_plain_digs[2] = { { .freedom = 7.0 }, { .freedom = 9.0 } };
+    table.cube.set.covariance                     = of_plain_digs;
     for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
         for (size_t t = 0; t < 2; t++) {
             const struct dig_curve_set *const made = make(t, at[i][0], at[i][1]);
             assert_int_equal(made->trajectories, 1);
             assert_null(made->approaches);
-            assert_null(made->covariance);
+            assert_memory_equal(made->covariance, &of_plain_digs[t], sizeof of_plain_digs[t]);
             const struct dig_trajectory dug =
                 approach_dug(t, (struct dig_approach){ at[i][0], at[i][1] * DEG });
             assert_memory_equal(&made->trajectory[0], &dug, sizeof dug);

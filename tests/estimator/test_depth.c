@@ -6,7 +6,7 @@
 #include "estimator/approach/approached.h"
 #include "estimator/approach/laid.h"
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/posterior.h"
+#include "estimator/match/likelihood.h"
 #include "tests/scratch.h"
 
 #include "tests/approach_table.h"
@@ -137,9 +137,9 @@ static double likeliest(const struct dig_observation *const dig)
     dig_approach_error_measure(set, 0, &error[0]);
     dig_pool_sum(1, dig, &sums);
     for (int i = 0; i <= 400; i++) {
-        const struct dig_approached_slot slot = { 0, { 0.8 + 0.001 * i, 0.0 }, over };
-        const double                     evidence =
-            dig_posterior_evidence(dig_approached_make(set, 1, &slot, error, memory), &sums);
+        const struct dig_approached_slot slot     = { 0, { 0.8 + 0.001 * i, 0.0 }, over };
+        const double                     evidence = dig_likelihood_evidence(
+                                dig_approached_make(set, 1, &slot, error, memory), &sums.group[0]);
         best = evidence > most ? 0.8 + 0.001 * i : best;
         most = fmax(most, evidence);
     }

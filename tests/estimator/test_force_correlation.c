@@ -1,6 +1,7 @@
-// Tests for estimator/match/posterior.h: how errors of moment and forces go together in packings
+// Tests for estimator/match/entry_scatter.h: how errors of moment and forces go together in
+// packings
 
-#include "estimator/match/posterior.h"
+#include "estimator/match/entry_scatter.h"
 
 #include "tables/derive.h"
 #include "tables/load.h"
@@ -88,9 +89,9 @@ static void errors_of_moment_and_forces_go_together_as_packings_show(void **stat
     const double Fx_Fz = b->sum[1][2] / b->points;
     print_message("over %.0f points: My, Fx %.3f; My, Fz %.3f; Fx, Fz %.3f\n", b->points, My_Fx,
                   My_Fz, Fx_Fz);
-    assert_close(My_Fx, DIG_POSTERIOR_MY_FX, 0.03);
-    assert_close(My_Fz, DIG_POSTERIOR_MY_FZ, 0.06);
-    assert_close(Fx_Fz, DIG_POSTERIOR_FX_FZ, 0.06);
+    assert_close(My_Fx, DIG_ENTRY_SCATTER_MY_FX, 0.03);
+    assert_close(My_Fz, DIG_ENTRY_SCATTER_MY_FZ, 0.06);
+    assert_close(Fx_Fz, DIG_ENTRY_SCATTER_FX_FZ, 0.06);
     dig_store_close(store);
     dig_curve_set_destroy(set);
     free(b);

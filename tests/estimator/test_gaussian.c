@@ -4,9 +4,7 @@
 
 #include "estimator/match/gaussian.h"
 
-#include "estimator/match/likelihood.h"
 #include "estimator/match/match.h"
-#include "estimator/match/posterior.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -16,6 +14,7 @@
 
 enum { N = DIG_COVARIANCE_NUMBERS, BLOCKS = DIG_COVARIANCE_BLOCKS, POINTS = DIG_CURVE_POINTS };
 enum { WIDE = POINTS / BLOCKS, PACKINGS = 4 };
+static const double enough_freedom = 200.0; // degrees of freedom
 
 static const struct made_options options = { .relative_sd = 0.15, .packings = PACKINGS };
 
@@ -101,7 +100,7 @@ static void misses_are_as_large_as_digs_make_them(void **state)
         const bool                  forces = way % 2 == 1, together = way / 2 == 1;
         uint64_t                    seed = 5;
         double                      sum  = 0.0;
-        struct dig_curve_set *const set  = taught(DIG_GAUSSIAN_FREEDOM, together, &seed);
+        struct dig_curve_set *const set  = taught(enough_freedom, together, &seed);
         for (int trial = 0; trial < TRIALS; trial++) {
             const struct dig_gravel *const gravel = &set->gravel[trial % 48];
             const struct dig_observation   dig    = dig_there(gravel, forces, together, &seed);
@@ -109,7 +108,7 @@ static void misses_are_as_large_as_digs_make_them(void **state)
             struct dig_gaussian            g;
             struct dig_cell                cell;
             dig_pool_sum(1, &dig, &sums);
-            assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
+            dig_gaussian_make(set, NULL, &sums.group[0], &g);
             assert_int_equal(g.numbers, forces ? N : BLOCKS);
             assert_int_equal(dig_cell_find(set, gravel, MADE_SIMPLE_A, &cell), DIG_OK);
             sum += dig_gaussian_mahalanobis(&g, &cell).square / (double)g.numbers / TRIALS;
@@ -129,7 +128,7 @@ static void the_interval_holds_the_gravel(void **state)
     (void)state;
     const int                   trials       = test_is_quick() ? 60 : 200;
     uint64_t                    seed         = 11;
-    struct dig_curve_set *const set          = taught(DIG_GAUSSIAN_FREEDOM, true, &seed);
+    struct dig_curve_set *const set          = taught(enough_freedom, true, &seed);
     int                         in[DIG_AXES] = { 0 };
     for (int trial = 0; trial < trials; trial++) {
         const struct dig_gravel      gravel = { { 0.3 + 0.6 * model_uniform(&seed),
@@ -151,38 +150,60 @@ static void the_interval_holds_the_gravel(void **state)
     forget(set);
 }
 
+static double log_of(const struct dig_curve_set *const set, const struct dig_pool_sums *const sums)
+{
+    struct dig_gaussian g;
+    struct dig_cell     cell;
+    dig_gaussian_make(set, NULL, &sums->group[0], &g);
+    assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
+    const struct dig_mahalanobis misses = dig_gaussian_mahalanobis(&g, &cell);
+    assert_close(dig_gaussian_log(&g, &cell), -0.35 * (misses.square + misses.log_det), 1e-9);
+    return dig_gaussian_log(&g, &cell);
+}
+
 // What is too little to be believed is not used: the likelihood is the one without it.
 static void a_covariance_of_too_few_packings_is_not_believed(void **state)
 {
     (void)state;
     uint64_t                     seed = 3;
-    struct dig_curve_set *const  set  = taught(DIG_GAUSSIAN_FREEDOM - 1.0, true, &seed);
+    struct dig_curve_set *const  set  = taught(23.0, true, &seed);
     const struct dig_observation dig  = dig_there(&set->gravel[7], true, true, &seed);
     struct dig_pool_sums         sums;
-    struct dig_gaussian          g;
-    struct dig_cell              cell;
-    struct dig_likelihood        few, enough, none;
     dig_pool_sum(1, &dig, &sums);
-    assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
-    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
-    assert_true(dig_gaussian_make(set, NULL, &sums.group[0], true, &g));
-    dig_likelihood_make(set, NULL, &sums.group[0], &few);
+    const double few = log_of(set, &sums);
     set->covariance[MADE_SIMPLE_A].freedom += 1.0;
-    assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
-    dig_likelihood_make(set, NULL, &sums.group[0], &enough);
+    const double                 more       = log_of(set, &sums);
     struct dig_covariance *const covariance = set->covariance;
     set->covariance                         = NULL;
-    assert_false(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
-    dig_likelihood_make(set, NULL, &sums.group[0], &none);
+    assert_close(few, log_of(set, &sums), 0.0);
+    assert_true(fabs(few - more) > 0.1);
     set->covariance = covariance;
-    assert_close(dig_likelihood_log(&few, &cell), dig_likelihood_log(&none, &cell), 0.0);
+    forget(set);
+}
 
-    const struct dig_mahalanobis misses = dig_gaussian_mahalanobis(&enough.gaussian, &cell);
-    assert_close(dig_likelihood_log(&enough, &cell), -0.35 * (misses.square + misses.log_det),
-                 1e-9);
-    // What is asked of being outside the table is not changed by it.
-    assert_close(dig_likelihood_reduced_chi2(&enough, &cell),
-                 dig_likelihood_reduced_chi2(&none, &cell), 0.0);
+// An error of the curve is as so many packings fewer: with one of sqrt(S_ii / 12) a mean of four is
+// known as one of three. Of one channel whose numbers all scatter alike.
+static void an_error_of_the_curve_is_as_fewer_packings(void **state)
+{
+    (void)state;
+    enum { FEWER = 3 };
+    uint64_t                     seed = 21;
+    struct dig_curve_set *const  set  = taught(enough_freedom, false, &seed);
+    const struct dig_observation dig  = dig_there(&set->gravel[9], false, false, &seed);
+    struct dig_covariance *const c    = &set->covariance[MADE_SIMPLE_A];
+    struct dig_pool_sums         sums;
+    for (int i = 0; i < N; i++) {
+        c->of[i][i] = 0.0036;
+    }
+    dig_pool_sum(1, &dig, &sums);
+    const size_t slot         = 9 * MADE_TRAJECTORIES + MADE_SIMPLE_A;
+    const double without      = log_of(set, &sums);
+    set->packings[slot]       = FEWER;
+    const double fewer        = log_of(set, &sums);
+    set->packings[slot]       = PACKINGS;
+    set->curve[slot].error[0] = (float)sqrt(0.0036 * (1.0 / FEWER - 1.0 / PACKINGS));
+    assert_close(log_of(set, &sums), fewer, 1e-6 * fabs(fewer));
+    assert_true(fabs(fewer - without) > 1e-3);
     forget(set);
 }
 
@@ -191,7 +212,7 @@ static void what_was_not_measured_is_not_compared(void **state)
 {
     (void)state;
     uint64_t                    seed = 8;
-    struct dig_curve_set *const set  = taught(DIG_GAUSSIAN_FREEDOM, true, &seed);
+    struct dig_curve_set *const set  = taught(enough_freedom, true, &seed);
     static const struct {
         double first, last;
         size_t numbers;
@@ -205,8 +226,7 @@ static void what_was_not_measured_is_not_compared(void **state)
         dig.first = cases[i].first;
         dig.last  = cases[i].last;
         dig_pool_sum(1, &dig, &sums);
-        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g) ==
-                    (cases[i].numbers > 0));
+        dig_gaussian_make(set, NULL, &sums.group[0], &g);
         assert_int_equal(g.numbers, cases[i].numbers);
         if (cases[i].numbers == 0) {
             continue;
@@ -220,7 +240,7 @@ static void what_was_not_measured_is_not_compared(void **state)
             }
         }
         dig_pool_sum(1, &dig, &sums);
-        assert_true(dig_gaussian_make(set, NULL, &sums.group[0], false, &g));
+        dig_gaussian_make(set, NULL, &sums.group[0], &g);
         assert_close(dig_gaussian_mahalanobis(&g, &cell).square, before.square, 0.0);
         assert_close(dig_gaussian_mahalanobis(&g, &cell).log_det, before.log_det, 0.0);
     }
@@ -233,6 +253,7 @@ int main(void)
         cmocka_unit_test(misses_are_as_large_as_digs_make_them),
         cmocka_unit_test(the_interval_holds_the_gravel),
         cmocka_unit_test(a_covariance_of_too_few_packings_is_not_believed),
+        cmocka_unit_test(an_error_of_the_curve_is_as_fewer_packings),
         cmocka_unit_test(what_was_not_measured_is_not_compared),
     };
     return cmocka_run_group_tests_name("gaussian", tests, NULL, NULL);

@@ -292,7 +292,7 @@ static void what_is_refused_of_all_entries_is_refused_by_a_summary(void **state)
     uint64_t                    seed = 17;
     wander(moment_of(set, 0, 0), 0.1, &seed);
     struct dig_observation dig = observe(moment_of(set, 0, 0), 0, 1.0, &seed);
-    struct dig_outline     outline[DIG_OUTLINE_LAYERS];
+    struct dig_outline     outline[DIG_FORCE_CHANNELS];
     struct dig_prefilter   summary;
     struct dig_match       match = { .nearest = 42 };
     dig_prefilter_make(set, outline, &summary);
@@ -319,7 +319,7 @@ static void what_is_far_by_its_outline_is_not_looked_at(void **state)
             moment_of(set, e, 0)[k] += e == NEAREST ? 0.0F : 50.0F;
         }
     }
-    struct dig_outline   outline[DIG_OUTLINE_LAYERS * ENTRIES];
+    struct dig_outline   outline[DIG_FORCE_CHANNELS * ENTRIES];
     struct dig_prefilter summary;
     dig_prefilter_make(set, outline, &summary);
     const struct dig_observation dig = observe(moment_of(set, NEAREST, 0), 0, 0.1, &seed);

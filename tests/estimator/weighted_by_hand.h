@@ -6,7 +6,6 @@
 #include "estimator/match/weighted.h"
 
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/posterior.h"
 #include "tests/made_table.h"
 
 #include <math.h>
@@ -21,9 +20,9 @@ enum {
     MOST     = 3 * 3 * BLOCKS
 };
 
-static const double channels[3][3] = { { 1, DIG_POSTERIOR_MY_FX, DIG_POSTERIOR_MY_FZ },
-                                       { DIG_POSTERIOR_MY_FX, 1, DIG_POSTERIOR_FX_FZ },
-                                       { DIG_POSTERIOR_MY_FZ, DIG_POSTERIOR_FX_FZ, 1 } };
+static const double channels[3][3] = { { 1, DIG_ENTRY_SCATTER_MY_FX, DIG_ENTRY_SCATTER_MY_FZ },
+                                       { DIG_ENTRY_SCATTER_MY_FX, 1, DIG_ENTRY_SCATTER_FX_FZ },
+                                       { DIG_ENTRY_SCATTER_MY_FZ, DIG_ENTRY_SCATTER_FX_FZ, 1 } };
 
 // What is compared of one trajectory: a number a block and channel, and D between all of them.
 struct numbers {
@@ -67,15 +66,38 @@ static inline double assumed(const struct dig_trajectory *const t, const int one
     return sum;
 }
 
-// Between two numbers of one dig, relative to the sizes of the curves: what packings show, drawn a
-// quarter towards 0.95 of the mean along its diagonal, or what is assumed; 5 % is each one's own.
+// Mean square of a curve in one block over that of the whole curve, of all entries: scatter goes
+// with the curve.
+static inline double share_of(const struct dig_curve_set *const set, const size_t trajectory,
+                              const int number)
+{
+    double sum = 0.0, entries = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot = e * MADE_TRAJECTORIES + trajectory;
+        double       here = 0.0, whole = 0.0;
+        for (int k = 0; k < POINTS; k++) {
+            const double t = (double)set->curve[slot].mean[number / BLOCKS][k];
+            here += k / WIDE == number % BLOCKS ? t * t / WIDE : 0.0;
+            whole += t * t / POINTS;
+        }
+        sum += set->packings[slot] > 0 ? here / whole : 0.0;
+        entries += set->packings[slot] > 0 ? 1.0 : 0.0;
+    }
+    return sum / entries;
+}
+
+// Between two numbers of one dig, relative to the sizes of the curves: what packings show, drawn
+// towards 0.95 of the mean along its diagonal, which counts 69 degrees of freedom, or what is
+// assumed; 5 % is each one's own.
 static inline double covariance_of(const struct dig_curve_set *const set, const size_t trajectory,
                                    const int one, const int other, const double relative_sd)
 {
     const struct dig_trajectory t = made_trajectory((enum made_trajectory)trajectory);
     if (set->covariance == NULL) {
-        return relative_sd * relative_sd * channels[one / BLOCKS][other / BLOCKS] *
-               assumed(&t, one % BLOCKS, other % BLOCKS) * (one == other ? 1.0 : 0.95);
+        return relative_sd * relative_sd *
+               sqrt(share_of(set, trajectory, one) * share_of(set, trajectory, other)) *
+               channels[one / BLOCKS][other / BLOCKS] * assumed(&t, one % BLOCKS, other % BLOCKS) *
+               (one == other ? 1.0 : 0.95);
     }
     const struct dig_covariance *const c = &set->covariance[trajectory];
     if (one == other) {
@@ -91,7 +113,8 @@ static inline double covariance_of(const struct dig_curve_set *const set, const 
         }
     }
     const double scale = sqrt(c->of[one][one] * c->of[other][other]);
-    return 0.95 * (0.75 * c->of[one][other] + 0.25 * 0.95 * sum / n * scale);
+    const double even  = 69.0 / (69.0 + c->freedom);
+    return 0.95 * ((1.0 - even) * c->of[one][other] + even * 0.95 * sum / n * scale);
 }
 
 // Appends those of one trajectory; what belongs to others is not correlated with them.

@@ -80,14 +80,13 @@ run "$work/daemon.log" "$BIN/digsightd" -c "$work/fourth.yaml"
 read_log fourth
 check "a daemon started anew goes on with them, forces and all" \
     [ "$(awk '$1 == "match" && $3 == 0 { n = $(NF - 2) } END { print n }' "$work/fourth.txt") $(forces "$work/fourth.txt")" = "4 1" ]
-simpleB=$work/simpleB.csv
+# Without a machine's noise the packings' scatter alone weighs: all of it is one factor, so what counts is the curve's shape.
 "$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" --json >"$work/A.json" 2>"$work/A.err"
-"$BIN/digloop" predict "$work/table.sqlite" --identified "$work/A.json" --trajectory simpleB -o "$simpleB" >"$work/B.txt" 2>&1
-check "digloop identify tells that entry, too" \
-    eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" | grep -q "^  noise-weighted: entry 0.9 / 0.6 / 1500, [1-9]" &&
-          grep -q "\"weighted_nearest\": {\"friction\": 0.9, \"rolling\": 0.6, \"density_kgpm3\": 1500}" "$work/A.json"'
+check "digloop identify tells such an entry, too" \
+    eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" | grep -q "^  noise-weighted: entry 0.6 / 0.3 / 1500, [1-9]" &&
+          grep -q "\"weighted_nearest\": {\"friction\": 0.6, \"rolling\": 0.3, \"density_kgpm3\": 1500}" "$work/A.json"'
 check "digloop matches simple digs along several trajectories together" \
-    eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" "$simpleB" |
+    eval '"$BIN/digloop" identify "$work/table.sqlite" "$work/simpleA.csv" "$work/simpleB.csv" |
           grep -q "^  2 digs (simpleA, simpleB): moment and forces$"'
 
 # An actual that is given up.

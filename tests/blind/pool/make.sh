@@ -2,7 +2,7 @@
 # Computes the digs of tests/data/blind: a minute and a half of one core a bed and three digs, 176 beds. Goes on where it was stopped.
 # usage, from the root of the sources: BIN=build/bin [JOBS=1] [ENGINE=kernel] tests/blind/pool/make.sh [judge | product]
 #   judge: what the judging split alone draws from, which a graphics card can dig whole (ENGINE=cuda)
-#   product: the digs of tests/data/product, in the open: 50 of two minutes each, beside other work
+#   product: the digs of tests/data/product, in the open: 134 of one to two minutes each, beside other work
 set -eu
 here=$(dirname "$0")
 out=tests/data/blind
@@ -34,9 +34,9 @@ make_table() { # SCENE GRID TABLE
     "$bin/digtable" generate "$1" "$2" -o "$3" -j "${JOBS:-1}" --engine "${ENGINE:-kernel}"
 }
 if [ "${1:-}" = product ]; then
-    mkdir -p tests/data/product/blind
-    for grid in effects plain; do
-        ENGINE=${ENGINE:-single} make_table config/scenes/product.yaml "$here/product/$grid.yaml" "tests/data/product/blind/$grid.sqlite"
+    mkdir -p tests/data/product/blind tests/data/product/spread
+    for table in effects=blind/effects plain=blind/plain spread_develop=spread/develop spread_judge=spread/judge; do
+        ENGINE=${ENGINE:-single} make_table config/scenes/product.yaml "$here/product/${table%=*}.yaml" "tests/data/product/${table#*=}.sqlite"
     done
     exit
 fi
