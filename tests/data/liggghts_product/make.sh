@@ -16,3 +16,8 @@ for seed in 1 2 3; do
         done
     done
 done
+fine=mu0.6_mur0.4_rho2200_bucket0.4 # an hour
+if [ ! -e "$here/fine/${fine}_seed1__simpleA.csv" ]; then
+    echo "fine/$fine seed 1 simpleA"
+    [ "${1:-}" = -n ] || ACROSS=14 SCENE=product OUT="$here/fine" "$here/../liggghts_digs/make.sh" $fine 1 simpleA
+fi
