@@ -150,6 +150,8 @@ static void the_spread_grows_by_what_leaving_out_says(void **state)
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 1e-4, 3);
     const struct dig_curve_set *made = make(0, 1.075, 0.0);
     assert_close(widened(made, 3, 0), 0.075 * 0.075, 0.05 * 0.075 * 0.075);
+    assert_close((double)made->curve[3].error[0] * rms(made->curve[3].mean[0]),
+                 widened(made, 3, 0) * rms(table.cube.curve[2 * 3].mean[0]), 1e-6);
     assert_close(worst(made, 3, 0, approach_growing(1.075, 0.0) + 0.075 * 0.075), 0.0, 1e-3);
     assert_true(widened(make(0, 1.15, 0.0), 3, 0) < 1e-4);
     assert_true(widened(make(0, 1.0, 2.5), 3, 0) < 3e-4); // attack does not bend
