@@ -7,7 +7,7 @@
 # is not dug again, so it may be stopped and started, also with more BEDS.
 #   BIN=build/bin OUT=build/bed_study [ENGINE=kernel] [JOBS=1] scripts/bed_study.sh [across] [finest] [finer] [room] [hard] [firm] [shipped]
 # On one of two busy threads of a core `across` takes half an hour, `room` 25 minutes, `hard` and `firm` 5 each; STIFFEST=1 adds
-# 150 MPa to `firm`, at .9/.9 as well. `finest`, 20 grains across, is for a graphics card: ENGINE=cuda JOBS=4, three minutes. `finer`, 28 across, takes ENGINE=single 50 minutes of a core.
+# 150 MPa to `firm`, at .9/.9 as well. `finest`, 20 grains across, is for a graphics card: ENGINE=cuda JOBS=4, three minutes. `finer`, 28 across, takes ENGINE=single 50 minutes of a core a bed, ENGINE=cuda JOBS=2 five minutes for two.
 set -euo pipefail
 bin=${BIN:-build/bin} out=${OUT:-build/bed_study} engine=${ENGINE:-kernel} jobs=${JOBS:-1} scene=config/scenes/rig.yaml
 mkdir -p "$out"
@@ -85,7 +85,7 @@ across() { # Grains across the bucket; the rig's box with sides that are one.
 
 finest() { study across_20 4 simpleA .5 "$(join "$(grain 0.0035)" "$periodic")"; }
 
-finer() { study across_28 1 simpleA .5 "$(join "$(grain 0.0025)" "$periodic")"; } # its scatter is small, so one bed does
+finer() { study across_28 3 simpleA .5 "$(join "$(grain 0.0025)" "$periodic")"; }
 
 room() { # Walls or sides that are one so many mm beside the bucket; the floor; the ends.
     study walls_25 12 simpleA .5 "$seven"
