@@ -5,9 +5,10 @@
 # the moment in time with its standard error, scatter of one dig's mean, and of its moment after
 # +-0.16 s (relative L2 against the beds' mean, 1 sigma), user seconds a dig, of actual the mean while it turns up. What lies in OUT
 # is not dug again, so it may be stopped and started, also with more BEDS.
-#   BIN=build/bin OUT=build/bed_study [ENGINE=kernel] [JOBS=1] scripts/bed_study.sh [across] [finest] [finer] [room] [hard] [firm] [shipped]
+#   BIN=build/bin OUT=build/bed_study [ENGINE=kernel] [JOBS=1] scripts/bed_study.sh [across] [finest] [finer] [forty] [room] [hard] [firm] [shipped]
 # On one of two busy threads of a core `across` takes half an hour, `room` 25 minutes, `hard` and `firm` 5 each; STIFFEST=1 adds
 # 150 MPa to `firm`, at .9/.9 as well. `finest`, 20 grains across, is for a graphics card: ENGINE=cuda JOBS=4, three minutes. `finer`, 28 across, takes ENGINE=single 50 minutes of a core a bed, ENGINE=cuda JOBS=2 five minutes for two.
+# `forty`, 40 across, takes a card four minutes to pour two beds and then ten to dig them; a bed that is poured is not poured again.
 set -euo pipefail
 bin=${BIN:-build/bin} out=${OUT:-build/bed_study} engine=${ENGINE:-kernel} jobs=${JOBS:-1} scene=config/scenes/rig.yaml
 mkdir -p "$out"
@@ -26,13 +27,16 @@ study() { # NAME BEDS TRAJECTORY FRICTION (and as much rolling friction) SED-SCR
     line "$name"
 }
 
-dig_one() { # DIG SEED TRAJECTORY FRICTION SCENE
+dig_one() { # DIG SEED TRAJECTORY FRICTION SCENE: a bed that is there is not poured again
+    local bed=(--save-bed "$1.bed.csv")
+    [ ! -s "$1.bed.csv" ] || bed=(--bed "$1.bed.csv")
     TIMEFORMAT=%U
     { time "$bin/digtable" dig "$5" --trajectory "$3" --friction "$4" --rolling "$4" --density 2500 --seed "$2" \
-        --engine "$engine" -o "$1.csv" 2>"$1.log"; } 2>"$1.user_s" || {
+        --engine "$engine" "${bed[@]}" -o "$1.csv" 2>"$1.log"; } 2>"$1.user_s" || {
         cat "$1.log" >&2
         exit 1
     }
+    rm "$1.bed.csv"
 }
 
 # One line of all digs of a variant that are there: the columns are the output windows, the same in all.
@@ -86,6 +90,8 @@ across() { # Grains across the bucket; the rig's box with sides that are one.
 finest() { study across_20 4 simpleA .5 "$(join "$(grain 0.0035)" "$periodic")"; }
 
 finer() { study across_28 3 simpleA .5 "$(join "$(grain 0.0025)" "$periodic")"; }
+
+forty() { study across_40 2 simpleA .5 "$(join "$(grain 0.00175)" "$periodic")"; }
 
 room() { # Walls or sides that are one so many mm beside the bucket; the floor; the ends.
     study walls_25 12 simpleA .5 "$seven"

@@ -152,7 +152,9 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
     w->n                        = v->n;
     w->pairs                    = v->pairs;
     w->clumps                   = v->clumps;
-    w->surface_rows            = v->surface_rows;
+    w->walls                   = v->walls;
+    w->plates                  = v->plates;
+    w->surfaces                = v->surfaces;
     const double     *at        = nullptr;
     const cudaError_t e[ARRAYS] = {
         place_const(c, TYPE_OF, n, v->type_of, &w->type_of),
@@ -170,7 +172,7 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
         place(c, PAIR_HISTORY, p, v->pair_history, &w->pair_history),
         place(c, TOUCHING, 2 * p, v->touching, &w->touching),
         place(c, PAIR_LOAD, 2 * p, static_cast<const dig_load *>(nullptr), &w->pair_load),
-        place(c, SURFACE_HISTORY, v->surface_rows * n, v->surface_history, &w->surface_history),
+        place(c, SURFACE_HISTORY, v->surfaces * n, v->surface_history, &w->surface_history),
         place(c, SURFACE_MASK, n, v->surface_mask, &w->surface_mask),
         place(c, SURFACE_LOAD, n, static_cast<const dig_load *>(nullptr), &w->surface_load),
         place(c, ON_TOOL, n, v->on_tool, &w->on_tool),
@@ -232,7 +234,7 @@ dig_status download(dig_device *const device, const bool all)
     if (all) {
         e = e == cudaSuccess ? fetch(c, t->pair_history, v->pair_history, v->pairs) : e;
         e = e == cudaSuccess ? fetch(c, t->touching, v->touching, 2 * v->pairs) : e;
-        e = e == cudaSuccess ? fetch(c, t->surface_history, v->surface_history, v->surface_rows * n) : e;
+        e = e == cudaSuccess ? fetch(c, t->surface_history, v->surface_history, v->surfaces * n) : e;
         e = e == cudaSuccess ? fetch(c, t->surface_mask, v->surface_mask, n) : e;
     }
     e = e == cudaSuccess ? cudaStreamSynchronize(c->stream) : e;

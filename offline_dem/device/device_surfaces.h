@@ -35,6 +35,12 @@ dig_device_surface_history(const struct dig_device_contacts *const grain, const 
     return &grain->view->surface_history[(size_t)surface * grain->view->n + grain->i];
 }
 
+DIG_BOTH static inline uint32_t dig_device_plate(const struct dig_device_contacts *const grain,
+                                                 const uint32_t                          plate)
+{
+    return grain->view->walls + plate;
+}
+
 DIG_BOTH static inline void dig_device_clear_history(struct dig_device_contacts *const grain,
                                                      const uint32_t                    surface)
 {
@@ -112,7 +118,7 @@ DIG_BOTH static inline bool dig_device_has_history(const struct dig_device_conta
                                                    const uint32_t                          plate)
 {
     const struct dig_contact_history *const m =
-        dig_device_surface_history(grain, DIG_WALLS_MAX + plate);
+        dig_device_surface_history(grain, dig_device_plate(grain, plate));
     return fabs(m->sx_m) > 0.0 || fabs(m->sy_m) > 0.0 || fabs(m->sz_m) > 0.0 ||
            fabs(m->mx_Nm) > 0.0 || fabs(m->my_Nm) > 0.0 || fabs(m->mz_Nm) > 0.0;
 }
@@ -122,10 +128,10 @@ DIG_BOTH static inline void dig_device_move_history(struct dig_device_contacts *
                                                     const uint32_t from, const uint32_t to)
 {
     if (!dig_device_has_history(grain, to)) {
-        *dig_device_surface_history(grain, DIG_WALLS_MAX + to) =
-            *dig_device_surface_history(grain, DIG_WALLS_MAX + from);
-        grain->surface_mask |= (uint64_t)1 << (DIG_WALLS_MAX + to);
-        dig_device_clear_history(grain, DIG_WALLS_MAX + from);
+        *dig_device_surface_history(grain, dig_device_plate(grain, to)) =
+            *dig_device_surface_history(grain, dig_device_plate(grain, from));
+        grain->surface_mask |= (uint64_t)1 << dig_device_plate(grain, to);
+        dig_device_clear_history(grain, dig_device_plate(grain, from));
     }
 }
 
@@ -178,7 +184,7 @@ DIG_BOTH static inline void dig_device_add_plate(struct dig_device_contacts *con
                                             tool->vz_mps + tool->w_radps * a[0] };
     const struct dig_law *const    law  = &grain->view->tool_law[grain->view->type_of[grain->i]];
     const struct dig_contact_force p =
-        dig_device_add_surface(grain, law, DIG_WALLS_MAX + plate, d, v);
+        dig_device_add_surface(grain, law, dig_device_plate(grain, plate), d, v);
     struct dig_wrench *const sum  = &grain->view->on_tool[grain->i];
     const double             f[3] = { p.fx_N, p.fy_N, p.fz_N };
     const double             t[3] = { p.jx_Nm, p.jy_Nm, p.jz_Nm };
@@ -217,15 +223,8 @@ DIG_BOTH static inline void dig_device_add_tool(struct dig_device_contacts *cons
         if ((near.contact_mask >> p & 1) != 0) {
             dig_device_add_plate(grain, p, body_m, near.closest_m[p]);
         } else {
-            dig_device_clear_history(grain, DIG_WALLS_MAX + p);
+            dig_device_clear_history(grain, dig_device_plate(grain, p));
         }
-    }
-}
-
-DIG_BOTH static inline void dig_device_clear_tool(struct dig_device_contacts *const grain)
-{
-    for (uint32_t p = DIG_WALLS_MAX; p < DIG_DEVICE_ROCKS; p++) {
-        dig_device_clear_history(grain, p);
     }
 }
 
@@ -235,6 +234,7 @@ DIG_BOTH static inline void dig_device_add_rocks(struct dig_device_contacts *con
     const struct dig_device_step *const step = grain->step;
     const struct dig_law *const law      = &grain->view->wall_law[grain->view->type_of[grain->i]];
     const double                still[3] = { 0.0, 0.0, 0.0 };
+    const uint32_t              first    = grain->view->walls + grain->view->plates;
     for (uint32_t r = 0; r < step->rocks; r++) {
         const struct dig_rock_surface *const rock = &step->rock[r];
         double seen[3] = { grain->m.x_m[0], grain->m.x_m[1], grain->m.x_m[2] };
@@ -247,9 +247,9 @@ DIG_BOTH static inline void dig_device_add_rocks(struct dig_device_contacts *con
         dig_rock_surface_separation(rock, seen, law->reach_m, closest, d);
         const struct dig_kinematics kinematics = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
         if (dig_device_touches(law, &kinematics)) {
-            (void)dig_device_add_surface(grain, law, DIG_DEVICE_ROCKS + r, d, still);
+            (void)dig_device_add_surface(grain, law, first + r, d, still);
         } else {
-            dig_device_clear_history(grain, DIG_DEVICE_ROCKS + r);
+            dig_device_clear_history(grain, first + r);
         }
     }
 }
@@ -265,8 +265,6 @@ DIG_BOTH static inline void dig_device_step_surfaces(const struct dig_device_vie
     dig_device_add_walls(&grain);
     if (step->has_tool) {
         dig_device_add_tool(&grain);
-    } else if (grain.surface_mask >> DIG_WALLS_MAX != 0) {
-        dig_device_clear_tool(&grain);
     }
     dig_device_add_rocks(&grain);
     if ((before | grain.surface_mask) != 0) {

@@ -87,7 +87,9 @@ void dig_contacts_renumber(struct dig_contacts *const list, const bool pairs,
         list->i[kept]    = i;
         list->j[kept]    = j;
         list->slot[kept] = DIG_NO_SLOT;
-        dig_contacts_set_history(list, kept, dig_contacts_history(list, c));
+        if (kept < c) {
+            dig_contacts_set_history(list, kept, dig_contacts_history(list, c));
+        }
         kept++;
     }
     list->n = kept;

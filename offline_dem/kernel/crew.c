@@ -143,6 +143,28 @@ void dig_crew_run(struct dig_crew *const crew, void (*const work)(void *context,
     (void)pthread_mutex_unlock(&crew->mutex);
 }
 
+// Work on items, as the members call it.
+struct each {
+    const struct dig_crew *crew;
+    size_t                 items;
+    void (*work)(void *context, size_t first, size_t end);
+    void *context;
+};
+
+static void work_on_share(void *const context, const size_t member)
+{
+    const struct each *const e = context;
+    e->work(e->context, dig_crew_share(e->crew, e->items, member),
+            dig_crew_share(e->crew, e->items, member + 1));
+}
+
+void dig_crew_each(struct dig_crew *const crew, const size_t                                items,
+                   void (*const work)(void *context, size_t first, size_t end), void *const context)
+{
+    struct each each = { crew, items, work, context };
+    dig_crew_run(crew, work_on_share, &each);
+}
+
 void dig_crew_destroy(struct dig_crew *const crew)
 {
     if (crew != NULL) {

@@ -23,6 +23,10 @@ size_t dig_crew_share(const struct dig_crew *crew, size_t items, size_t member);
 /// all are done. NULL: the caller alone. Costs some microseconds.
 void dig_crew_run(struct dig_crew *crew, void (*work)(void *context, size_t member), void *context);
 
+/// The same with work(context, first, end) for each member's share of so many items: [first, end).
+void dig_crew_each(struct dig_crew *crew, size_t                                items,
+                   void (*work)(void *context, size_t first, size_t end), void *context);
+
 /// NULL is allowed.
 void dig_crew_destroy(struct dig_crew *crew);
 

@@ -1,6 +1,7 @@
 #include "offline_dem/kernel/grains.h"
 
 #include "core/units.h"
+#include "offline_dem/kernel/crew.h"
 
 #include <assert.h>
 #include <math.h>
@@ -10,12 +11,17 @@
 // Cache lines: no grain's position or velocity straddles two.
 #define ALIGNMENT 64
 
+// What is allocated has no values yet.
+static void *allocate_unset(const size_t n, const size_t size)
+{
+    return aligned_alloc(ALIGNMENT, (n * size + ALIGNMENT) / ALIGNMENT * ALIGNMENT);
+}
+
 static void *allocate(const size_t n, const size_t size)
 {
-    const size_t bytes = (n * size + ALIGNMENT) / ALIGNMENT * ALIGNMENT;
-    void *const  p     = aligned_alloc(ALIGNMENT, bytes);
+    void *const p = allocate_unset(n, size);
     if (p != NULL) {
-        memset(p, 0, bytes);
+        memset(p, 0, n * size);
     }
     return p;
 }
@@ -90,29 +96,46 @@ void dig_grains_drop(struct dig_grains *const grains, const unsigned char drop[]
     grains->slabs = (struct dig_slabs){ .count = 1, .grains = kept + 1 };
 }
 
-enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[])
+// Grains on their way to another order.
+struct reorder {
+    const struct dig_grains *from;
+    const uint32_t          *order;
+    struct dig_grains       *to;
+};
+
+static void reorder_share(void *const context, const size_t first, const size_t end)
+{
+    const struct reorder *const    r    = context;
+    const struct dig_grains *const from = r->from;
+    for (size_t k = first; k < end; k++) {
+        const uint32_t i  = r->order[k];
+        r->to->motion[k]  = from->motion[i];
+        r->to->type_of[k] = from->type_of[i];
+        r->to->id[k]      = from->id[i];
+        if (from->clump != NULL) {
+            r->to->clump[k] = from->clump[i];
+        }
+    }
+}
+
+enum dig_status dig_grains_reorder(struct dig_grains *const grains, const uint32_t order[],
+                                   struct dig_crew *const crew)
 {
     assert(!grains->in_single);
     const size_t      n    = grains->n;
     struct dig_grains made = {
-        .motion  = allocate(n, sizeof *made.motion),
-        .type_of = allocate(n, sizeof *made.type_of),
-        .id      = allocate(n, sizeof *made.id),
-        .clump   = grains->clump == NULL ? NULL : allocate(n, sizeof *made.clump),
+        .motion  = allocate_unset(n, sizeof *made.motion),
+        .type_of = allocate_unset(n, sizeof *made.type_of),
+        .id      = allocate_unset(n, sizeof *made.id),
+        .clump   = grains->clump == NULL ? NULL : allocate_unset(n, sizeof *made.clump),
     };
     if (made.motion == NULL || made.type_of == NULL || made.id == NULL ||
         (made.clump == NULL && grains->clump != NULL)) {
         dig_grains_finish(&made);
         return DIG_ENOMEM;
     }
-    for (size_t k = 0; k < n; k++) {
-        made.motion[k]  = grains->motion[order[k]];
-        made.type_of[k] = grains->type_of[order[k]];
-        made.id[k]      = grains->id[order[k]];
-        if (made.clump != NULL) {
-            made.clump[k] = grains->clump[order[k]];
-        }
-    }
+    struct reorder reorder = { grains, order, &made };
+    dig_crew_each(crew, n, reorder_share, &reorder);
     free(grains->motion);
     free(grains->type_of);
     free(grains->id);

@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct dig_crew;
+
 #define DIG_GRAIN_TYPES_MAX 16 // different radii, densities and materials in one bed
 
 /// A grain's motion. Rows of four, the fourth unused: one load fetches a vector.
@@ -83,9 +85,9 @@ DIG_MUST_CHECK enum dig_status dig_grains_create(size_t types, const struct dig_
 /// Removes every grain for which drop is not 0; the others keep their order.
 void dig_grains_drop(struct dig_grains *grains, const unsigned char drop[]);
 
-/// Moves grain order[k] to index k. DIG_ENOMEM leaves all as it was.
-DIG_MUST_CHECK enum dig_status dig_grains_reorder(struct dig_grains *grains,
-                                                  const uint32_t     order[]);
+/// Moves grain order[k] to index k; the crew shares the work. DIG_ENOMEM leaves all as it was.
+DIG_MUST_CHECK enum dig_status dig_grains_reorder(struct dig_grains *grains, const uint32_t order[],
+                                                  struct dig_crew *crew);
 
 void dig_grains_finish(struct dig_grains *grains);
 

@@ -82,8 +82,23 @@ static void size_grid(const struct dig_grains *const grains, struct grid *const 
     }
 }
 
+// The cells of grains, which a crew tells.
+struct cells {
+    const struct dig_grains *grains;
+    const struct grid       *grid;
+    uint32_t                *of; // [n]
+};
+
+static void tell_cells(void *const context, const size_t first, const size_t end)
+{
+    const struct cells *const c = context;
+    for (size_t i = first; i < end; i++) {
+        c->of[i] = (uint32_t)cell_of(c->grid, c->grains->motion[i].x_m);
+    }
+}
+
 static enum dig_status fill_grid(const struct dig_grains *const grains, const double cell_m,
-                                 struct grid *const g)
+                                 struct dig_crew *const crew, struct grid *const g)
 {
     const size_t n = grains->n;
     g->cell_m      = cell_m;
@@ -97,8 +112,9 @@ static enum dig_status fill_grid(const struct dig_grains *const grains, const do
         free(cell);
         return DIG_ENOMEM;
     }
+    struct cells cells = { grains, g, cell };
+    dig_crew_each(crew, n, tell_cells, &cells);
     for (size_t i = 0; i < n; i++) {
-        cell[i] = (uint32_t)cell_of(g, grains->motion[i].x_m);
         g->start[cell[i] + 2]++;
     }
     for (size_t c = 2; c < g->cells + 2; c++) {
@@ -113,13 +129,13 @@ static enum dig_status fill_grid(const struct dig_grains *const grains, const do
 }
 
 enum dig_status dig_neighbours_sort(const struct dig_grains *const grains, const double cell_m,
-                                    uint32_t order[])
+                                    struct dig_crew *const crew, uint32_t order[])
 {
     if (grains->n == 0) {
         return DIG_OK;
     }
     struct grid           g;
-    const enum dig_status status = fill_grid(grains, cell_m, &g);
+    const enum dig_status status = fill_grid(grains, cell_m, crew, &g);
     if (status != DIG_OK) {
         return status;
     }
@@ -256,11 +272,10 @@ struct shared_search {
     struct dig_neighbours   *list;
 };
 
-static void order_by_cells(void *const context, const size_t member)
+static void order_by_cells(void *const context, const size_t first, const size_t end)
 {
-    const struct shared_search *const s   = context;
-    const size_t                      end = dig_crew_share(s->crew, s->grains->n, member + 1);
-    for (size_t k = dig_crew_share(s->crew, s->grains->n, member); k < end; k++) {
+    const struct shared_search *const s = context;
+    for (size_t k = first; k < end; k++) {
         s->cell_grain[k] = make_cell_grain(s->grains, s->margin_m, s->grid.member[k]);
     }
 }
@@ -369,13 +384,14 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         .crew         = crew,
         .list         = list,
     };
-    enum dig_status status = fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), &search.grid);
+    enum dig_status status =
+        fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), crew, &search.grid);
     if (status == DIG_OK) {
         search.cell_grain = malloc((n + 1) * sizeof *search.cell_grain);
         if (search.cell_grain == NULL) {
             status = DIG_ENOMEM;
         } else {
-            dig_crew_run(crew, order_by_cells, &search);
+            dig_crew_each(crew, n, order_by_cells, &search);
             status = find_pairs(&search);
         }
         free(search.cell_grain);

@@ -164,21 +164,17 @@ static void put_slab_pairs(struct dig_world *const w, const size_t slab)
     }
 }
 
-static void find_member_pairs(void *const context, const size_t member)
+static void find_pairs(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w   = context;
-    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
-        find_slab_pairs(w, slab);
+    for (size_t slab = first; slab < end; slab++) {
+        find_slab_pairs(context, slab);
     }
 }
 
-static void put_member_pairs(void *const context, const size_t member)
+static void put_pairs(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w   = context;
-    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
-        put_slab_pairs(w, slab);
+    for (size_t slab = first; slab < end; slab++) {
+        put_slab_pairs(context, slab);
     }
 }
 
@@ -217,11 +213,11 @@ enum dig_status dig_contact_detection_pairs(struct dig_world *const w)
         set_slabs(&w->grains, true, d->pair) != DIG_OK) {
         return DIG_ENOMEM;
     }
-    dig_crew_run(w->crew, find_member_pairs, w);
+    dig_crew_each(w->crew, w->grains.slabs.count, find_pairs, w);
     const enum dig_status status = place_slabs(w);
     if (status == DIG_OK) {
         index_pairs(w, false);
-        dig_crew_run(w->crew, put_member_pairs, w);
+        dig_crew_each(w->crew, w->grains.slabs.count, put_pairs, w);
         index_pairs(w, true);
     }
     swap_lists(status, DIG_PAIR_LISTS, w->pair, d->pair);

@@ -27,18 +27,16 @@
 #include <stdint.h>
 
 /// Version of this header: a device library of another version is refused.
-#define DIG_DEVICE_VERSION 2
+#define DIG_DEVICE_VERSION 3
 
-// Numbers of surfaces: walls, then plates, then rocks.
-#define DIG_DEVICE_ROCKS    (DIG_WALLS_MAX + DIG_PLATES_MAX)
-#define DIG_DEVICE_SURFACES (DIG_DEVICE_ROCKS + DIG_OBSTACLES_MAX)
-#define DIG_DEVICE_LAWS     (DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
+#define DIG_DEVICE_LAWS (DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
 
 /// The grains and their contacts as arrays. A pair keeps its place in the neighbour list as long as
-/// that list lives.
+/// that list lives. Surfaces are numbered walls first, then plates of the tool, then rocks.
 struct dig_device_view {
     uint32_t n, pairs, clumps;
-    uint32_t surface_rows; // rows of surface_history in use
+    uint32_t walls, plates; // 0 plates: no tool
+    uint32_t surfaces;      // walls, plates and rocks
 
     // Fixed between two uploads.
     const uint8_t *type_of;         // [n] grain types
@@ -58,7 +56,7 @@ struct dig_device_view {
     struct dig_contact_history *pair_history;    // [pairs]
     uint8_t                    *touching;        // [2 pairs] of a load: whether its pair touches
     struct dig_load            *pair_load;       // [2 pairs] valid where touching
-    struct dig_contact_history *surface_history; // [surface_rows][n]
+    struct dig_contact_history *surface_history; // [surfaces][n]
     uint64_t                   *surface_mask;    // [n] bit s: touches surface s
     struct dig_load            *surface_load;    // [n] from walls, tool and rocks
     struct dig_wrench          *on_tool; // [n] wrench of each grain on the tool, summed over steps

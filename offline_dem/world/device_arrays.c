@@ -1,5 +1,6 @@
 #include "offline_dem/world/device_arrays.h"
 
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/world/bodies.h"
 
 #include <stdlib.h>
@@ -44,16 +45,15 @@ static enum dig_status make_grains_room(struct dig_device_arrays *const o, const
 {
     struct dig_device_view *const v       = &o->view;
     const size_t                  bytes[] = {
-                         (n + 1) * sizeof *v->load_start,
-                         DIG_DEVICE_SURFACES * (n + 1) * sizeof *v->surface_history,
-                         (n + 1) * sizeof *v->surface_mask,
-                         (n + 1) * sizeof *v->surface_load,
+                         (n + 1) * sizeof *v->load_start,   v->surfaces * (n + 1) * sizeof *v->surface_history,
+                         (n + 1) * sizeof *v->surface_mask, (n + 1) * sizeof *v->surface_load,
                          (n + 1) * sizeof *v->on_tool,
     };
     void *array[5] = { NULL };
     free(o->grains);
     o->grains          = allocate(5, bytes, array);
     o->grain_room      = o->grains != NULL ? n + 1 : 0;
+    o->surface_room    = v->surfaces;
     v->load_start      = array[0];
     v->surface_history = array[1];
     v->surface_mask    = array[2];
@@ -86,40 +86,69 @@ static enum dig_status make_pairs_room(struct dig_device_arrays *const o, const 
 static enum dig_status make_room(struct dig_device_arrays *const o, const size_t n,
                                  const size_t pairs)
 {
-    enum dig_status status = o->grain_room < n + 1 ? make_grains_room(o, n) : DIG_OK;
+    const bool      fits   = o->grain_room >= n + 1 && o->surface_room >= o->view.surfaces;
+    enum dig_status status = fits ? DIG_OK : make_grains_room(o, n);
     if (status == DIG_OK && o->pair_room < pairs + 1) {
         status = make_pairs_room(o, pairs);
     }
     return status;
 }
 
+// What the members of a crew copy from a world to a view.
+struct copy {
+    struct dig_world             *world;
+    const struct dig_device_view *view;
+    const struct dig_contacts    *list; // written
+};
+
 // Loads on a grain stand in a row, in the order of its pairs in the neighbour list: every device
-// adds them in this order.
-static void index_loads(const struct dig_neighbours *const near, struct dig_device_view *const v)
+// adds them in this order. A member goes through all pairs for the loads on its own grains.
+static void count_loads(void *const context, const size_t first, const size_t end)
 {
-    uint32_t *const first = v->load_start;
-    uint32_t *const row   = v->pair_i;
-    memset(first, 0, (v->n + 1) * sizeof *first);
-    for (uint32_t i = 0; i < v->n; i++) {
+    const struct copy *const            c     = context;
+    const struct dig_neighbours *const  near  = &c->world->neighbours;
+    const struct dig_device_view *const v     = c->view;
+    uint32_t *const                     count = v->load_start + 1;
+    for (size_t i = first; i < end; i++) {
+        count[i] = near->start[i + 1] - near->start[i];
         for (uint32_t p = near->start[i]; p < near->start[i + 1]; p++) {
-            row[p] = i;
-            first[i]++;
-            first[near->other[p]]++;
+            v->pair_i[p] = (uint32_t)i;
         }
     }
-    uint32_t sum = 0;
-    for (uint32_t i = 0; i <= v->n; i++) {
-        const uint32_t count = first[i];
-        first[i]             = sum;
-        sum += count;
-    }
-    // Filling moves every start to its end, which is the next start.
     for (uint32_t p = 0; p < v->pairs; p++) {
-        v->load_index[p][0] = first[row[p]]++;
-        v->load_index[p][1] = first[near->other[p]]++;
+        if (v->pair_j[p] >= first && v->pair_j[p] < end) {
+            count[v->pair_j[p]]++;
+        }
     }
-    memmove(first + 1, first, v->n * sizeof *first);
-    first[0] = 0;
+}
+
+// Every start ends where the next grain's loads begin.
+static void place_loads(void *const context, const size_t first, const size_t end)
+{
+    const struct dig_device_view *const v    = ((const struct copy *)context)->view;
+    uint32_t *const                     next = v->load_start;
+    for (uint32_t p = 0; p < v->pairs; p++) {
+        if (v->pair_i[p] >= first && v->pair_i[p] < end) {
+            v->load_index[p][0] = next[v->pair_i[p]]++;
+        }
+        if (v->pair_j[p] >= first && v->pair_j[p] < end) {
+            v->load_index[p][1] = next[v->pair_j[p]]++;
+        }
+    }
+}
+
+static void index_loads(struct copy *const c)
+{
+    const struct dig_device_view *const v     = c->view;
+    uint32_t *const                     start = v->load_start;
+    dig_crew_each(c->world->crew, v->n, count_loads, c);
+    start[0] = 0;
+    for (uint32_t i = 0; i < v->n; i++) {
+        start[i + 1] += start[i];
+    }
+    dig_crew_each(c->world->crew, v->n, place_loads, c);
+    memmove(start + 1, start, v->n * sizeof *start);
+    start[0] = 0;
 }
 
 static struct dig_contact_history load_history(const struct dig_contacts *const list,
@@ -130,44 +159,76 @@ static struct dig_contact_history load_history(const struct dig_contacts *const 
                                          sign * m[3][c], sign * m[4][c], sign * m[5][c] };
 }
 
-static void write_pairs(const struct dig_world *const w, const struct dig_device_view *const v)
+static void clear_pairs(void *const context, const size_t first, const size_t end)
 {
-    memset(v->pair_history, 0, v->pairs * sizeof *v->pair_history);
-    memset(v->touching, 0, 2 * (size_t)v->pairs * sizeof *v->touching);
-    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        const struct dig_contacts *const list = &w->pair[l];
-        for (size_t c = 0; c < list->n; c++) {
-            const uint32_t p = list->slot[c];
-            if (p != UINT32_MAX) {
-                v->pair_history[p] = load_history(list, c, v->pair_i[p] == list->i[c] ? 1.0 : -1.0);
-                v->touching[v->load_index[p][0]] = 1;
-                v->touching[v->load_index[p][1]] = 1;
-            }
+    const struct dig_device_view *const v = ((const struct copy *)context)->view;
+    memset(v->pair_history + first, 0, (end - first) * sizeof *v->pair_history);
+    memset(v->touching + 2 * first, 0, 2 * (end - first) * sizeof *v->touching);
+}
+
+static void write_contacts(void *const context, const size_t first, const size_t end)
+{
+    const struct copy *const            copy = context;
+    const struct dig_contacts *const    list = copy->list;
+    const struct dig_device_view *const v    = copy->view;
+    for (size_t c = first; c < end; c++) {
+        const uint32_t p = list->slot[c];
+        if (p != UINT32_MAX) {
+            v->pair_history[p] = load_history(list, c, v->pair_i[p] == list->i[c] ? 1.0 : -1.0);
+            v->touching[v->load_index[p][0]] = 1;
+            v->touching[v->load_index[p][1]] = 1;
         }
     }
 }
 
-// Contacts of one list with surfaces; surface j of the list has number first + j.
-static void write_list(const struct dig_contacts *const list, const uint32_t first,
-                       const struct dig_device_view *const v)
+static void write_pairs(struct copy *const copy)
 {
-    for (size_t c = 0; c < list->n; c++) {
-        const uint32_t i                         = list->i[c];
-        const uint32_t s                         = first + list->j[c];
-        v->surface_history[(size_t)s * v->n + i] = load_history(list, c, 1.0);
-        v->surface_mask[i] |= (uint64_t)1 << s;
+    struct dig_crew *const crew = copy->world->crew;
+    dig_crew_each(crew, copy->view->pairs, clear_pairs, copy);
+    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
+        copy->list = &copy->world->pair[l];
+        if (copy->list->n > 0) {
+            dig_crew_each(crew, copy->list->n, write_contacts, copy);
+        }
     }
 }
 
-static void write_surfaces(const struct dig_world *const w, const struct dig_device_view *const v)
+// Contacts of one list with surfaces; surface j of the list has number first + j, if it is less
+// than end: a wall or a tool that is gone touches nothing.
+static void write_list(const struct dig_contacts *const list, const uint32_t first,
+                       const uint32_t end, const struct dig_device_view *const v)
 {
-    memset(v->surface_history, 0, v->surface_rows * (size_t)v->n * sizeof *v->surface_history);
-    memset(v->surface_mask, 0, v->n * sizeof *v->surface_mask);
+    for (size_t c = 0; c < list->n; c++) {
+        const uint32_t i = list->i[c];
+        const uint32_t s = first + list->j[c];
+        if (s < end) {
+            v->surface_history[(size_t)s * v->n + i] = load_history(list, c, 1.0);
+            v->surface_mask[i] |= (uint64_t)1 << s;
+        }
+    }
+}
+
+static void clear_surfaces(void *const context, const size_t first, const size_t end)
+{
+    const struct dig_device_view *const v = ((const struct copy *)context)->view;
+    for (uint32_t s = 0; s < v->surfaces; s++) {
+        memset(v->surface_history + (size_t)s * v->n + first, 0,
+               (end - first) * sizeof *v->surface_history);
+    }
+    memset(v->surface_mask + first, 0, (end - first) * sizeof *v->surface_mask);
+}
+
+static void write_surfaces(struct copy *const copy)
+{
+    const struct dig_world *const       w     = copy->world;
+    const struct dig_device_view *const v     = copy->view;
+    const uint32_t                      rocks = v->walls + v->plates;
+    dig_crew_each(w->crew, v->n, clear_surfaces, copy);
     for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        write_list(&w->surface[k], 0, v);
-        write_list(&w->surface[DIG_GRAIN_TYPES_MAX + k], DIG_WALLS_MAX - (uint32_t)w->walls, v);
+        write_list(&w->surface[k], 0, v->walls, v);
+        write_list(&w->surface[DIG_GRAIN_TYPES_MAX + k], 0, rocks, v);
         if (w->bodies != NULL) {
-            write_list(&w->bodies->obstacles.contact[k], DIG_DEVICE_ROCKS, v);
+            write_list(&w->bodies->obstacles.contact[k], rocks, v->surfaces, v);
         }
     }
 }
@@ -187,121 +248,41 @@ static void write_laws(const struct dig_world *const w, struct dig_law pair_law[
     }
 }
 
-enum dig_status dig_device_arrays_write(const struct dig_world *const   w,
+enum dig_status dig_device_arrays_write(struct dig_world *const         w,
                                         struct dig_device_arrays *const arrays)
 {
-    const size_t          n      = w->grains.n;
-    const size_t          pairs  = w->neighbours.start[n];
-    const enum dig_status status = make_room(arrays, n, pairs);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_device_view *const v = &arrays->view;
-    v->n                            = (uint32_t)n;
-    v->pairs                        = (uint32_t)pairs;
-    v->type_of                      = w->grains.type_of;
-    v->reference_m                  = (const double(*)[4])w->neighbours.reference_m;
-    v->pair_j                       = w->neighbours.other;
-    v->pair_law                     = arrays->pair_law;
-    v->wall_law                     = w->wall_law;
-    v->tool_law                     = w->tool_law;
-    v->type                         = w->grains.type;
-    v->motion                       = w->grains.motion;
-    v->surface_rows                 = DIG_DEVICE_ROCKS;
+    const size_t                  n     = w->grains.n;
+    const size_t                  pairs = w->neighbours.start[n];
+    struct dig_device_view *const v     = &arrays->view;
+    v->walls                            = (uint32_t)w->walls;
+    v->plates                           = w->tool == NULL ? 0 : (uint32_t)w->tool->plates;
+    v->surfaces                         = v->walls + v->plates;
     if (w->bodies != NULL) {
         v->clumps = (uint32_t)w->bodies->clumps;
         v->clump  = w->bodies->clump;
         v->shape  = &w->bodies->shape;
-        v->surface_rows += (uint32_t)w->bodies->obstacles.rocks;
+        v->surfaces += (uint32_t)w->bodies->obstacles.rocks;
     }
-    index_loads(&w->neighbours, v);
+    const enum dig_status status = make_room(arrays, n, pairs);
+    if (status != DIG_OK) {
+        return status;
+    }
+    v->n             = (uint32_t)n;
+    v->pairs         = (uint32_t)pairs;
+    v->type_of       = w->grains.type_of;
+    v->reference_m   = (const double(*)[4])w->neighbours.reference_m;
+    v->pair_j        = w->neighbours.other;
+    v->pair_law      = arrays->pair_law;
+    v->wall_law      = w->wall_law;
+    v->tool_law      = w->tool_law;
+    v->type          = w->grains.type;
+    v->motion        = w->grains.motion;
+    struct copy copy = { .world = w, .view = v };
+    index_loads(&copy);
     write_laws(w, arrays->pair_law);
-    write_pairs(w, v);
-    write_surfaces(w, v);
+    write_pairs(&copy);
+    write_surfaces(&copy);
     memset(v->on_tool, 0, n * sizeof *v->on_tool);
     memset(v->margin_flag, 0, DIG_MARGIN_FLAGS * sizeof *v->margin_flag);
     return DIG_OK;
-}
-
-static enum dig_status append_history(struct dig_contacts *const list, const uint32_t i,
-                                      const uint32_t                          j,
-                                      const struct dig_contact_history *const history,
-                                      const double                            sign)
-{
-    const enum dig_status status = dig_contacts_add(list, i, j, UINT32_MAX, NULL, 0);
-    if (status == DIG_OK) {
-        const double m[DIG_HISTORY_VALUES] = { history->sx_m,  history->sy_m,  history->sz_m,
-                                               history->mx_Nm, history->my_Nm, history->mz_Nm };
-        for (int k = 0; k < DIG_HISTORY_VALUES; k++) {
-            list->history[k][list->n - 1] = sign * m[k];
-        }
-    }
-    return status;
-}
-
-static enum dig_status read_pairs(const struct dig_device_view *const v, struct dig_world *const w)
-{
-    enum dig_status status = DIG_OK;
-    for (uint32_t p = 0; p < v->pairs && status == DIG_OK; p++) {
-        if (v->touching[v->load_index[p][0]] == 0) {
-            continue;
-        }
-        const uint32_t i = v->pair_i[p];
-        const uint32_t j = v->pair_j[p];
-        const size_t   a = v->type_of[i];
-        const size_t   b = v->type_of[j];
-        status           = a <= b ? append_history(&w->pair[a * DIG_GRAIN_TYPES_MAX + b], i, j,
-                                                   &v->pair_history[p], 1.0)
-                                  : append_history(&w->pair[b * DIG_GRAIN_TYPES_MAX + a], j, i,
-                                                   &v->pair_history[p], -1.0);
-    }
-    return status;
-}
-
-static enum dig_status read_surfaces(const struct dig_device_view *const v,
-                                     struct dig_world *const             w)
-{
-    enum dig_status status = DIG_OK;
-    for (uint32_t i = 0; i < v->n; i++) {
-        for (uint32_t s = 0;
-             s < v->surface_rows && v->surface_mask[i] >> s != 0 && status == DIG_OK; s++) {
-            if ((v->surface_mask[i] >> s & 1) == 0) {
-                continue;
-            }
-            const struct dig_contact_history *const history =
-                &v->surface_history[(size_t)s * v->n + i];
-            const size_t type = v->type_of[i];
-            if (s < DIG_WALLS_MAX) {
-                status = append_history(&w->surface[type], i, s, history, 1.0);
-            } else if (s < DIG_DEVICE_ROCKS) {
-                status = append_history(&w->surface[DIG_GRAIN_TYPES_MAX + type], i,
-                                        (uint32_t)w->walls + s - DIG_WALLS_MAX, history, 1.0);
-            } else {
-                status = append_history(&w->bodies->obstacles.contact[type], i,
-                                        s - DIG_DEVICE_ROCKS, history, 1.0);
-            }
-        }
-    }
-    return status;
-}
-
-static void clear_lists(struct dig_world *const w)
-{
-    for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        w->pair[l].n = 0;
-    }
-    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
-        w->surface[l].n = 0;
-    }
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX && w->bodies != NULL; k++) {
-        w->bodies->obstacles.contact[k].n = 0;
-    }
-}
-
-enum dig_status dig_device_arrays_read(const struct dig_device_arrays *const arrays,
-                                       struct dig_world *const               w)
-{
-    clear_lists(w);
-    const enum dig_status status = read_pairs(&arrays->view, w);
-    return status == DIG_OK ? read_surfaces(&arrays->view, w) : status;
 }

@@ -10,7 +10,7 @@ struct dig_device_arrays {
     struct dig_device_view view;
     struct dig_law         pair_law[DIG_DEVICE_LAWS];
     void                  *grains, *pairs; // memory of the view's arrays of grains, and of pairs
-    size_t                 grain_room, pair_room;
+    size_t                 grain_room, surface_room, pair_room;
 };
 
 /// DIG_ENOMEM.
@@ -18,9 +18,9 @@ DIG_MUST_CHECK enum dig_status dig_device_arrays_init(struct dig_device_arrays *
 
 void dig_device_arrays_finish(struct dig_device_arrays *arrays);
 
-/// Fills the view from a world whose neighbour list has just been rebuilt. The view points to the
-/// world's grains and neighbours. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_device_arrays_write(const struct dig_world   *world,
+/// Fills the view from a world whose neighbour list has just been rebuilt; the world's crew shares
+/// the work. The view points to the world's grains and neighbours. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_device_arrays_write(struct dig_world         *world,
                                                        struct dig_device_arrays *arrays);
 
 /// Makes the world's contact lists from the view. DIG_ENOMEM.

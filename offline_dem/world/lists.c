@@ -1,5 +1,6 @@
 #include "offline_dem/world/lists.h"
 
+#include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/period.h"
 #include "offline_dem/world/bodies.h"
 #include "offline_dem/world/contact_detection.h"
@@ -53,17 +54,30 @@ static uint32_t find_slot(const struct dig_neighbours *const near, const uint32_
     return DIG_NO_SLOT;
 }
 
-// Slot of each contact in a new neighbour list. A pair listed in the other order is swapped.
-static void find_slots(const struct dig_neighbours *const near, const bool like,
-                       struct dig_contacts *const list)
+// A rebuild of the neighbour list, whose work the world's crew shares.
+struct rebuild {
+    struct dig_world    *world;
+    struct dig_skin      skin;
+    uint32_t            *order;     // [grains] the grain that comes to this place
+    uint32_t            *new_index; // [grains]
+    double              *margin;    // [grains]
+    struct dig_contacts *list;      // whose slots are found
+    bool                 like;      // its grains are of one type
+};
+
+// Slot of each contact in the new neighbour list. A pair listed in the other order is swapped.
+static void find_slots(void *const context, const size_t first, const size_t end)
 {
-    for (size_t c = 0; c < list->n; c++) {
+    const struct rebuild *const        r    = context;
+    const struct dig_neighbours *const near = &r->world->neighbours;
+    struct dig_contacts *const         list = r->list;
+    for (size_t c = first; c < end; c++) {
         const uint32_t i    = list->i[c];
         const uint32_t j    = list->j[c];
         uint32_t       slot = find_slot(near, i, j);
         if (slot == DIG_NO_SLOT) {
             slot = find_slot(near, j, i);
-            if (like && slot != DIG_NO_SLOT) {
+            if (r->like && slot != DIG_NO_SLOT) {
                 list->i[c]                         = j;
                 list->j[c]                         = i;
                 const struct dig_contact_history h = dig_contacts_history(list, c);
@@ -87,57 +101,71 @@ static void wrap(struct dig_world *const w)
     }
 }
 
-enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_skin skin)
+static void widen(void *const context, const size_t first, const size_t end)
 {
-    const size_t    n         = w->grains.n;
-    uint32_t *const order     = malloc((n + 1) * sizeof *order);
-    uint32_t *const new_index = calloc(n + 1, sizeof *new_index);
-    double *const   margin    = malloc((n + 1) * sizeof *margin);
-    enum dig_status status    = DIG_ENOMEM;
-    if (order == NULL || new_index == NULL || margin == NULL) {
-        goto done;
+    const struct rebuild *const    r      = context;
+    const struct dig_grains *const grains = &r->world->grains;
+    for (size_t i = first; i < end; i++) {
+        const double radius_m = grains->type[grains->type_of[i]].radius_m;
+        const double moving_m = r->skin.steps * r->world->dt_s * speed(grains, i);
+        r->margin[i] = fmin(r->skin.radii * radius_m + moving_m, r->skin.most_radii * radius_m);
     }
-    wrap(w);
-    double radius_max_m = 0.0;
+}
+
+static enum dig_status rebuild(struct rebuild *const r)
+{
+    struct dig_world *const w            = r->world;
+    const size_t            n            = w->grains.n;
+    double                  radius_max_m = 0.0;
     for (size_t k = 0; k < w->grains.types; k++) {
         radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
-    status = dig_neighbours_sort(
-        &w->grains, (w->single ? SORT_RADII_SINGLE : SORT_RADII) * radius_max_m, order);
+    wrap(w);
+    enum dig_status status = dig_neighbours_sort(
+        &w->grains, (w->single ? SORT_RADII_SINGLE : SORT_RADII) * radius_max_m, w->crew, r->order);
+    status = status == DIG_OK ? dig_grains_reorder(&w->grains, r->order, w->crew) : status;
     if (status != DIG_OK) {
-        goto done;
+        return status;
     }
     for (size_t k = 0; k < n; k++) {
-        new_index[order[k]] = (uint32_t)k;
+        r->new_index[r->order[k]] = (uint32_t)k;
     }
-    status = dig_grains_reorder(&w->grains, order);
+    dig_lists_renumber(w, r->new_index);
+    dig_bodies_renumber(w->bodies, r->new_index);
+    dig_crew_each(w->crew, n, widen, r);
+    status = dig_neighbours_build(&w->grains, w->period_y_m, r->margin, w->crew, &w->neighbours);
     if (status != DIG_OK) {
-        goto done;
-    }
-    dig_lists_renumber(w, new_index);
-    dig_bodies_renumber(w->bodies, new_index);
-    for (size_t i = 0; i < n; i++) {
-        const double radius_m = w->grains.type[w->grains.type_of[i]].radius_m;
-        const double moving_m = skin.steps * w->dt_s * speed(&w->grains, i);
-        margin[i]             = fmin(skin.radii * radius_m + moving_m, skin.most_radii * radius_m);
-    }
-    status = dig_neighbours_build(&w->grains, w->period_y_m, margin, w->crew, &w->neighbours);
-    if (status != DIG_OK) {
-        goto done;
+        return status;
     }
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
-        const bool like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
-        find_slots(&w->neighbours, like, &w->pair[l]);
+        r->list = &w->pair[l];
+        r->like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
+        if (r->list->n > 0) {
+            dig_crew_each(w->crew, r->list->n, find_slots, r);
+        }
     }
     if (w->single) {
         dig_grains_set_slabs(&w->grains, dig_neighbours_reach(&w->neighbours));
     }
     w->list_rebuilds++;
+    return DIG_OK;
+}
 
-done:
-    free(order);
-    free(new_index);
-    free(margin);
+enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_skin skin)
+{
+    const size_t   n = w->grains.n;
+    struct rebuild r = {
+        .world     = w,
+        .skin      = skin,
+        .order     = malloc((n + 1) * sizeof *r.order),
+        .new_index = calloc(n + 1, sizeof *r.new_index),
+        .margin    = malloc((n + 1) * sizeof *r.margin),
+    };
+    const bool            has_room = r.order != NULL && r.new_index != NULL && r.margin != NULL;
+    const enum dig_status status   = has_room ? rebuild(&r) : DIG_ENOMEM;
+    free(r.order);
+    free(r.new_index);
+    free(r.margin);
     return status;
 }
 

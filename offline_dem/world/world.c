@@ -127,11 +127,9 @@ static void advance(struct dig_world *const w, const size_t slab)
 
 // A slab is advanced as soon as its contacts and those beside it are done, while it is still in the
 // cache. The first and the last slab of a member wait for those of other members.
-static void add_loads_and_advance(void *const context, const size_t member)
+static void add_loads_and_advance(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w     = context;
-    const size_t            first = dig_crew_share(w->crew, w->grains.slabs.count, member);
-    const size_t            end   = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
+    struct dig_world *const w = context;
     for (size_t slab = first; slab < end; slab++) {
         add_contact_loads(w, slab);
         if (slab > first + 1) {
@@ -140,11 +138,9 @@ static void add_loads_and_advance(void *const context, const size_t member)
     }
 }
 
-static void advance_ends(void *const context, const size_t member)
+static void advance_ends(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w     = context;
-    const size_t            first = dig_crew_share(w->crew, w->grains.slabs.count, member);
-    const size_t            end   = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
+    struct dig_world *const w = context;
     if (first < end) {
         advance(w, first);
     }
@@ -153,20 +149,18 @@ static void advance_ends(void *const context, const size_t member)
     }
 }
 
-static void add_all_loads(void *const context, const size_t member)
+static void add_all_loads(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w   = context;
-    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
+    struct dig_world *const w = context;
+    for (size_t slab = first; slab < end; slab++) {
         add_contact_loads(w, slab);
     }
 }
 
-static void advance_all(void *const context, const size_t member)
+static void advance_all(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w   = context;
-    const size_t            end = dig_crew_share(w->crew, w->grains.slabs.count, member + 1);
-    for (size_t slab = dig_crew_share(w->crew, w->grains.slabs.count, member); slab < end; slab++) {
+    struct dig_world *const w = context;
+    for (size_t slab = first; slab < end; slab++) {
         advance(w, slab);
     }
 }
@@ -180,18 +174,19 @@ enum dig_status dig_world_step(struct dig_world *const w)
     if (status != DIG_OK) {
         return status;
     }
+    const size_t slabs = w->grains.slabs.count;
     if (w->bodies != NULL) {
-        dig_crew_run(w->crew, add_all_loads, w);
+        dig_crew_each(w->crew, slabs, add_all_loads, w);
         dig_bodies_apply_loads(w);
-        dig_crew_run(w->crew, advance_all, w);
+        dig_crew_each(w->crew, slabs, advance_all, w);
     } else {
-        dig_crew_run(w->crew, add_loads_and_advance, w);
-        dig_crew_run(w->crew, advance_ends, w);
+        dig_crew_each(w->crew, slabs, add_loads_and_advance, w);
+        dig_crew_each(w->crew, slabs, advance_ends, w);
     }
     w->on_tool  = w->slab_sums[0].on_tool;
     w->on_walls = w->slab_sums[0].on_walls;
     w->stale    = w->slab_sums[0].left;
-    for (size_t slab = 1; slab < w->grains.slabs.count; slab++) {
+    for (size_t slab = 1; slab < slabs; slab++) {
         add_wrench(&w->slab_sums[slab].on_tool, &w->on_tool);
         add_wrench(&w->slab_sums[slab].on_walls, &w->on_walls);
         w->stale = w->stale || w->slab_sums[slab].left;

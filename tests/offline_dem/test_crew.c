@@ -4,7 +4,9 @@
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/random.h"
+#include "offline_dem/world/offloaded.h"
 #include "tests/dem_fixture.h"
+#include "tests/offline_dem/host_device.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -89,6 +91,39 @@ static void a_large_bed_moves_alike_on_any_number_of_threads(void **state)
     dig_world_finish(&alone);
 }
 
+// The crew shares the copies to and from a device.
+static void a_bed_on_a_device_moves_alike_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    struct dig_world world[2] = { make_bar(), make_bar() };
+    for (size_t k = 0; k < 2; k++) {
+        struct dig_device *const device = dem_host_device_create();
+        assert_non_null(device);
+        world[k].wall[0].offset_m = -0.99 * GRAIN_m; // where it throws no grain out of its margin
+        if (k > 0) {
+            assert_int_equal(dig_crew_create(3, &world[k].crew), DIG_OK);
+        }
+        assert_int_equal(dig_offload(&world[k], device), DIG_OK);
+        dem_run(&world[k], 10);
+        dig_world_mark_stale(&world[k]);
+        dem_run(&world[k], 10);
+        assert_int_equal(dig_world_sync(&world[k]), DIG_OK);
+        device->destroy(device);
+    }
+    assert_true(world[0].pair[0].n > MANY / 2 && world[0].surface[0].n > ACROSS);
+    assert_int_equal(world[0].pair[0].n, world[1].pair[0].n);
+    assert_memory_equal(world[0].pair[0].j, world[1].pair[0].j,
+                        world[0].pair[0].n * sizeof *world[0].pair[0].j);
+    assert_memory_equal(world[0].pair[0].history[0], world[1].pair[0].history[0],
+                        world[0].pair[0].n * sizeof *world[0].pair[0].history[0]);
+    assert_memory_equal(world[0].grains.motion, world[1].grains.motion,
+                        MANY * sizeof *world[0].grains.motion);
+    dig_crew_destroy(world[1].crew);
+    for (size_t k = 0; k < 2; k++) {
+        dig_world_finish(&world[k]);
+    }
+}
+
 // In double precision a bed has no slabs: no contact is lost or counted twice between them.
 static void slabs_lose_no_contact(void **state)
 {
@@ -140,6 +175,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_member_works_once_a_call),
         cmocka_unit_test(a_large_bed_moves_alike_on_any_number_of_threads),
+        cmocka_unit_test(a_bed_on_a_device_moves_alike_on_any_number_of_threads),
         cmocka_unit_test(slabs_lose_no_contact),
         cmocka_unit_test(a_small_bed_is_not_shared),
     };

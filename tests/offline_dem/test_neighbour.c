@@ -143,7 +143,7 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
     struct scatter s = make_scatter(3);
     uint32_t       order[GRAINS];
     bool           seen[GRAINS] = { false };
-    assert_int_equal(dig_neighbours_sort(&s.grains, 0.01, order), DIG_OK);
+    assert_int_equal(dig_neighbours_sort(&s.grains, 0.01, NULL, order), DIG_OK);
     double path_m = 0.0, unsorted_m = 0.0;
     for (size_t k = 0; k < GRAINS; k++) {
         assert_true(order[k] < GRAINS);
@@ -159,7 +159,7 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
         }
     }
     assert_true(path_m < 0.75 * unsorted_m);
-    assert_int_equal(dig_grains_reorder(&s.grains, order), DIG_OK);
+    assert_int_equal(dig_grains_reorder(&s.grains, order, NULL), DIG_OK);
     for (size_t k = 0; k < GRAINS; k++) {
         assert_int_equal(s.grains.id[k], order[k]);
     }
