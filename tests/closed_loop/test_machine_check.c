@@ -97,7 +97,7 @@ static bool is_tried(const size_t b, const size_t m)
     if (tests_all()) {
         return true;
     }
-    if (test_is_quick() && b % 4 != 0) {
+    if (test_is_quick() && b % 8 != 0) {
         return false;
     }
     const struct air_break *const broken = &air_breaks[b];

@@ -13,8 +13,6 @@
 
 #include <stdlib.h>
 
-enum { DIGS = 40 };
-
 static const struct dig_approach cross[] = {
     { 0.8, 0.0 }, { 1.0, -0.1 }, { 1.0, 0.1 }, { 1.2, 0.0 }
 };
@@ -125,7 +123,7 @@ static void a_curve_over_a_deeper_path_begins_later(void **state)
     }
 }
 
-// The depth of the greatest evidence, by 401 tables.
+// The depth of the greatest evidence, by 81 tables.
 static double likeliest(const struct dig_observation *const dig)
 {
     const struct dig_curve_set *const set    = &table.cube.set;
@@ -136,11 +134,11 @@ static double likeliest(const struct dig_observation *const dig)
     double                            most = -INFINITY;
     dig_approach_error_measure(set, 0, &error[0]);
     dig_pool_sum(1, dig, &sums);
-    for (int i = 0; i <= 400; i++) {
-        const struct dig_approached_slot slot     = { 0, { 0.8 + 0.001 * i, 0.0 }, over };
+    for (int i = 0; i <= 80; i++) {
+        const struct dig_approached_slot slot     = { 0, { 0.8 + 0.005 * i, 0.0 }, over };
         const double                     evidence = dig_likelihood_evidence(
                                 dig_approached_make(set, 1, &slot, error, memory), &sums.group[0]);
-        best = evidence > most ? 0.8 + 0.001 * i : best;
+        best = evidence > most ? 0.8 + 0.005 * i : best;
         most = fmax(most, evidence);
     }
     free(memory);
@@ -152,7 +150,7 @@ static void the_likeliest_depth_is_found_by_few_looks(void **state)
 {
     (void)state;
     static const double depth[] = { 0.875, 0.93, 1.07, 1.12 };
-    for (size_t i = 0; i < sizeof depth / sizeof depth[0]; i++) {
+    for (size_t i = 0; i < sizeof depth / sizeof depth[0]; i += test_is_quick() ? 3 : 1) {
         struct dig_observation dig  = observe(5, depth[i], over, NULL);
         const double           best = likeliest(&dig);
         assert_int_equal(fit(0.008, &dig), DIG_OK);
@@ -166,6 +164,7 @@ static void depth_is_told_by_all_of_a_dig(void **state)
 {
     (void)state;
     static const double      depth[] = { 0.85, 1.0, 1.15 };
+    const size_t             digs    = test_is_quick() ? 8 : 24;
     struct dig_entry_scatter shape;
     uint64_t                 seed = 5;
     for (size_t i = 0; i < sizeof depth / sizeof depth[0]; i++) {
@@ -174,7 +173,7 @@ static void depth_is_told_by_all_of_a_dig(void **state)
         double                      off2 = 0.0;
         double                      rough2 = 0.0;
         dig_entry_scatter_make(&dug, 0.09, &shape);
-        for (size_t d = 0; d < DIGS; d++) {
+        for (size_t d = 0; d < digs; d++) {
             double error[DIG_CURVE_POINTS];
             dig_entry_scatter_draw(&shape, &seed, error);
             struct dig_observation dig = observe(d % CUBE_GRAVELS, depth[i], over, error);
@@ -182,13 +181,13 @@ static void depth_is_told_by_all_of_a_dig(void **state)
                 dig_approach_depth(&table.cube.set, 0, over, 0.0, 0.0, 1.0, dig.moment_Nm);
             assert_int_equal(fit(0.008, &dig), DIG_OK);
             assert_true(dig_approach_is_same(&dig.made, &dig.approach));
-            off += (dig.made.depth - depth[i]) / DIGS;
-            off2 += pow(dig.made.depth - depth[i], 2.0) / DIGS;
-            rough2 += pow(rough - depth[i], 2.0) / DIGS;
+            off += (dig.made.depth - depth[i]) / (double)digs;
+            off2 += pow(dig.made.depth - depth[i], 2.0) / (double)digs;
+            rough2 += pow(rough - depth[i], 2.0) / (double)digs;
         }
         print_message("depth %.2f: off by %.3f, rms %.3f; by where it begins %.3f\n", depth[i], off,
                       sqrt(off2), sqrt(rough2));
-        assert_true(fabs(off) < 0.02);
+        assert_true(test_is_quick() || fabs(off) < 0.02);
         assert_true(sqrt(off2) < 0.7 * sqrt(rough2));
     }
 }

@@ -117,10 +117,26 @@ static inline double covariance_of(const struct dig_curve_set *const set, const 
     return 0.95 * ((1.0 - even) * c->of[one][other] + even * 0.95 * sum / n * scale);
 }
 
+// Of all numbers of one dig: the same for every entry.
+struct relative {
+    double of[3 * BLOCKS][3 * BLOCKS];
+};
+
+static inline void relate(const struct dig_curve_set *const set, const size_t trajectory,
+                          const double relative_sd, struct relative *const relative)
+{
+    for (int one = 0; one < 3 * BLOCKS; one++) {
+        for (int other = 0; other < 3 * BLOCKS; other++) {
+            relative->of[one][other] = covariance_of(set, trajectory, one, other, relative_sd);
+        }
+    }
+}
+
 // Appends those of one trajectory; what belongs to others is not correlated with them.
 static inline void append(const struct dig_curve_set *const set, const size_t entry,
-                          const struct dig_pooled *const group, const double relative_sd,
-                          const size_t nearest, struct numbers *const all)
+                          const struct dig_pooled *const group,
+                          const struct relative *const relative, const size_t nearest,
+                          struct numbers *const all)
 {
     const struct dig_curve *const near =
         &set->curve[nearest * MADE_TRAJECTORIES + group->trajectory];
@@ -159,7 +175,7 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
             noise[k] = mean * noise2[i][k];
         }
         const int    n    = all->count++;
-        const double own2 = covariance_of(set, group->trajectory, w, w, relative_sd);
+        const double own2 = relative->of[w][w];
         which[n]          = w;
         scale[n]          = sqrt(size * own2 * (mean_in(group, b, one, NULL) + 1.0 / PACKINGS) +
                                  mean_in(group, b, noise, NULL)) /
@@ -179,7 +195,7 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
     for (int n = from; n < all->count; n++) {
         for (int o = from; o < all->count; o++) {
             all->d[n][o] = scale[n] * scale[o] * (n == o ? 1.0 : together[n] * together[o]) *
-                           covariance_of(set, group->trajectory, which[n], which[o], relative_sd);
+                           relative->of[which[n]][which[o]];
         }
     }
 }
@@ -215,12 +231,16 @@ static inline struct dig_weighted by_hand(const struct dig_curve_set *const set,
     struct numbers *const all   = calloc(1, sizeof *all);
     struct dig_weighted   best  = { .entry = -1 };
     double                least = INFINITY;
+    struct relative       relative[DIG_TRAJECTORY_MAX];
+    for (size_t g = 0; g < sums->groups; g++) {
+        relate(set, sums->group[g].trajectory, relative_sd, &relative[g]);
+    }
     for (size_t e = 0; e < set->entries; e++) {
         bool dug = true;
         memset(all, 0, sizeof *all);
         for (size_t g = 0; g < sums->groups; g++) {
             dug = dug && set->packings[e * MADE_TRAJECTORIES + sums->group[g].trajectory] > 0;
-            append(set, e, &sums->group[g], relative_sd, nearest, all);
+            append(set, e, &sums->group[g], &relative[g], nearest, all);
         }
         const double q = eliminate(all);
         if (dug && q < least) {
