@@ -35,8 +35,8 @@ estimator              estimator estimator_tick
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
 estimator/track        inertia_error observation phase recorded_dig route settings track window | abort_detection
                        ending estimate followed motion
-estimator/approach     approach_error approach_fit approach_slots approaches interpolate live_recording
-                       observe_dig | approach_response approach_route approached laid
+estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
+                       interpolate live_recording observe_dig | approach_response laid
 estimator/effects      effect template
 estimator/match        depth gravel_match match pool prefilter | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
@@ -54,7 +54,7 @@ offline_dem/cuda
 closed_loop/numeric    | chance dense levenberg vectors
 closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise
                        regressors
-closed_loop/model      | candidate response_surface scatter soil soil_fit
+closed_loop/model      | candidate depth_change response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs
 closed_loop/machine    machine_check machine_side | machine_lines machine_motion machine_side_private
 closed_loop/search     | cross_validation portmanteau search search_work unlisted

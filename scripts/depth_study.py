@@ -34,15 +34,16 @@ def pose(start, phases, time_s, depth):
     return x_m, z_m, math.degrees(theta_rad)
 
 
-def write(path, start, phases, depth, first_s, step_s, windows, curve):
+def write(path, start, phases, depth, first_s, step_s, windows, curve, air_s=0.0):
+    """A force recording; it begins air_s above the ground, on the line of the first phase."""
     value = struct.unpack(f"<{CHANNELS * windows}f", curve)
     with open(path, "w", encoding="ascii") as to:
         to.write("t_s,pin_x_m,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm\n")
-        for i in range(windows):
+        for i in range(-round(air_s / step_s), windows):
             time_s = first_s + i * step_s
-            my_nm, fx_n, fz_n = (value[c * windows + i] for c in range(3))
+            my_nm, fx_n, fz_n = (value[c * windows + i] if i >= 0 else 0.0 for c in range(3))
             x_m, z_m, theta_deg = pose(start, phases, time_s, depth)
-            to.write(f"{time_s:.6f},{x_m:.6f},{z_m:.6f},{theta_deg:.4f},{fx_n:.9g},0,{fz_n:.9g},0,{my_nm:.9g},0\n")
+            to.write(f"{time_s + air_s:.6f},{x_m:.6f},{z_m:.6f},{theta_deg:.4f},{fx_n:.9g},0,{fz_n:.9g},0,{my_nm:.9g},0\n")
 
 
 def identify(binaries, table, recording, work):

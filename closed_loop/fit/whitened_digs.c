@@ -1,6 +1,7 @@
 #include "closed_loop/fit/whitened_digs.h"
 
 #include "closed_loop/fit/same_bed.h"
+#include "closed_loop/model/depth_change.h"
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/numeric/vectors.h"
 
@@ -132,10 +133,11 @@ static double sensor_variance(const struct dig_whitened_digs *const batch, const
     return n > 0.0 ? sum / n : 0.0;
 }
 
-// The size of the group's mean dig, and of its scatter at the gravel it is thought to be of.
-static void measure_size(const struct dig_whitened_digs *const batch, const size_t g,
-                         const double feature[][DIG_FEATURES], const bool mask[DIG_FEATURES],
-                         const double place[DIG_AXES], double amplitude[DIG_FORCE_CHANNELS])
+// The size of the group's mean dig times the root of the scatter's factor, which is returned, at
+// the gravel it is thought to be of.
+static double measure_size(const struct dig_whitened_digs *const batch, const size_t g,
+                           const double feature[][DIG_FEATURES], const bool mask[DIG_FEATURES],
+                           const double place[DIG_AXES], double amplitude[DIG_FORCE_CHANNELS])
 {
     const struct dig_whitened_digs_group *const group              = &batch->group[g];
     double                                      mean[DIG_FEATURES] = { 0.0 };
@@ -146,7 +148,7 @@ static void measure_size(const struct dig_whitened_digs *const batch, const size
     }
     dig_features_amplitude(mean, mask, amplitude);
     if (place == NULL) {
-        return;
+        return 1.0;
     }
     // The whole dig's amplitude follows from the part that was measured as the table's does.
     const struct dig_gravel gravel = dig_response_surface_gravel(batch->surface, place);
@@ -160,6 +162,25 @@ static void measure_size(const struct dig_whitened_digs *const batch, const size
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         amplitude[c] *= factor * whole[c] / fmax(part[c], 1e-3 * whole[c]);
     }
+    return factor;
+}
+
+// What a dig of the group does where its ground lies elsewhere, 1 sigma over the size; zeros where
+// that is known. Digs of a trajectory scatter alike, so one that is open opens all.
+static enum dig_status open_depth(const struct dig_whitened_digs *const batch, const size_t g,
+                                  const double place[DIG_AXES], double change[DIG_FEATURES])
+{
+    bool open = false;
+    for (size_t i = 0; i < batch->digs; i++) {
+        open = open ||
+               (batch->dig[i].group == g && batch->measured[batch->dig[i].measured].depth_open);
+    }
+    memset(change, 0, DIG_FEATURES * sizeof change[0]);
+    const struct dig_gravel gravel =
+        dig_response_surface_gravel(batch->surface, place != NULL ? place : change);
+    return open ? dig_depth_change(batch->surface->set, batch->group[g].trajectory,
+                                   place != NULL ? &gravel : NULL, change)
+                : DIG_OK;
 }
 
 static enum dig_status fill_group(struct dig_whitened_digs *const batch, const size_t g,
@@ -169,7 +190,8 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
     struct dig_whitened_digs_group *const group = &batch->group[g];
     bool                                  mask[DIG_FEATURES];
     intersect(batch, g, mask);
-    measure_size(batch, g, feature, mask, place, group->amplitude);
+    const double root = measure_size(batch, g, feature, mask, place, group->amplitude);
+    double       deeper[DIG_FEATURES];
     group->features = 0;
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         if (mask[f]) {
@@ -180,11 +202,17 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
     if (n < LEAST_FEATURES) {
         return DIG_ENOMATCH;
     }
+    const enum dig_status status = open_depth(batch, g, place, deeper);
+    if (status != DIG_OK) {
+        return status;
+    }
     double lower[DIG_FEATURES * DIG_FEATURES];
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) {
-            lower[i * n + j] =
-                batch->scatter->covariance[group->trajectory][group->feature[i]][group->feature[j]];
+            const size_t a   = group->feature[i];
+            const size_t b   = group->feature[j];
+            lower[i * n + j] = batch->scatter->covariance[group->trajectory][a][b] +
+                               deeper[a] * deeper[b] / (root * root);
         }
         const size_t f = group->feature[i];
         lower[i * n + i] +=

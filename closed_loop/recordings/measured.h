@@ -19,8 +19,10 @@ struct dig_measured {
     size_t       order;    // place in the campaign, 0 …: digs follow each other in this order
     int          trajectory;
     enum dig_use use;
-    unsigned     pass; // how often the place was dug, counted from 1
-    double       pace; // duration of the table's trajectory / of this dig, both at rig scale
+    unsigned     pass;       // how often the place was dug, counted from 1
+    bool         depth_open; // the ground may lie higher or lower: a machine's, or of another path
+    double       pace;       // duration of the table's trajectory / of this dig, both at rig scale
+    double       depth; // as its path tells, over the table's; 0: not told. 1 once value is of that
 
     double first, last;                           // progress range from contact to exit
     bool   measured[DIG_CHANNELS];                // which of the channels there are

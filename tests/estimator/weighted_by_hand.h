@@ -228,27 +228,26 @@ static inline struct dig_weighted by_hand(const struct dig_curve_set *const set,
                                           const struct dig_pool_sums *const sums,
                                           const double relative_sd, const size_t nearest)
 {
-    struct numbers *const all   = calloc(1, sizeof *all);
-    struct dig_weighted   best  = { .entry = -1 };
-    double                least = INFINITY;
-    struct relative       relative[DIG_TRAJECTORY_MAX];
+    struct numbers      all;
+    struct dig_weighted best  = { .entry = -1 };
+    double              least = INFINITY;
+    struct relative     relative[DIG_TRAJECTORY_MAX];
     for (size_t g = 0; g < sums->groups; g++) {
         relate(set, sums->group[g].trajectory, relative_sd, &relative[g]);
     }
     for (size_t e = 0; e < set->entries; e++) {
         bool dug = true;
-        memset(all, 0, sizeof *all);
+        memset(&all, 0, sizeof all);
         for (size_t g = 0; g < sums->groups; g++) {
             dug = dug && set->packings[e * MADE_TRAJECTORIES + sums->group[g].trajectory] > 0;
-            append(set, e, &sums->group[g], &relative[g], nearest, all);
+            append(set, e, &sums->group[g], &relative[g], nearest, &all);
         }
-        const double q = eliminate(all);
+        const double q = eliminate(&all);
         if (dug && q < least) {
             least = q;
-            best  = (struct dig_weighted){ (int)e, sqrt(q / all->count) };
+            best  = (struct dig_weighted){ (int)e, sqrt(q / all.count) };
         }
     }
-    free(all);
     return best;
 }
 

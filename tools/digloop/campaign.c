@@ -56,6 +56,19 @@ static void shrink(struct dig_recording *const recording, const double lambda)
     }
 }
 
+// How deep the dig was, as the length of its first leg tells. It may as well have begun in the air.
+static void tell_depth(const struct dig_curve_set *const set,
+                       const struct dig_recording *const recording, struct dig_measured *const m)
+{
+    static const double same = 0.02; // of the depth
+    struct dig_observed as_dug;
+    if (dig_observe_as_dug(set, recording, &as_dug, NULL) == DIG_OK &&
+        as_dug.trajectory == m->trajectory && fabs(as_dug.made.depth - 1.0) > same) {
+        m->depth      = as_dug.made.depth;
+        m->depth_open = true;
+    }
+}
+
 static enum dig_status measure_force(const struct dig_campaign_recording *const r,
                                      const struct dig_curve_set *const set, const double scale,
                                      struct dig_measured *const m, struct dig_error *const error)
@@ -69,6 +82,8 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
         status = dig_observe_dig(set, &recording, &o, &why);
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", r->file, why.text);
+        } else {
+            tell_depth(set, &recording, m);
         }
     }
     dig_recording_finish(&recording);

@@ -35,7 +35,7 @@ make_table() { # SCENE GRID TABLE
 }
 if [ "${1:-}" = product ]; then
     mkdir -p tests/data/product/blind tests/data/product/spread
-    for table in effects=blind/effects plain=blind/plain spread_develop=spread/develop spread_judge=spread/judge; do
+    for table in effects=blind/effects plain=blind/plain spread_develop=spread/develop spread_judge=spread/judge depths=depths; do
         ENGINE=${ENGINE:-single} make_table config/scenes/product.yaml "$here/product/${table%=*}.yaml" "tests/data/product/${table#*=}.sqlite"
     done
     exit

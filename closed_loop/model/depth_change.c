@@ -1,0 +1,157 @@
+#include "closed_loop/model/depth_change.h"
+
+#include "estimator/approach/approach_route.h"
+#include "estimator/approach/approach_slots.h"
+#include "estimator/approach/approached.h"
+#include "estimator/approach/interpolate.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHALLOWEST, DEEPEST, SLOTS };
+
+// A cell's features.
+static void features_in(const struct dig_cell *const cell, double feature[DIG_FEATURES])
+{
+    memset(feature, 0, DIG_FEATURES * sizeof feature[0]);
+    for (size_t i = 0; i < cell->corners; i++) {
+        double corner[DIG_FEATURES];
+        dig_features_of_table(cell->curve[i]->mean, corner);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            feature[f] += cell->weight[i] * corner[f];
+        }
+    }
+}
+
+// Adds one gravel's change from the shallowest to the deepest, over its plain dig's size.
+static void add_change(const struct dig_cell *const plain, const struct dig_cell at[SLOTS],
+                       double sum[DIG_FEATURES])
+{
+    double of_plain[DIG_FEATURES];
+    double shallow[DIG_FEATURES];
+    double deep[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
+    features_in(plain, of_plain);
+    features_in(&at[SHALLOWEST], shallow);
+    features_in(&at[DEEPEST], deep);
+    dig_features_amplitude(of_plain, NULL, amplitude);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        sum[f] += (deep[f] - shallow[f]) / amplitude[f / DIG_FEATURE_BINS];
+    }
+}
+
+// The gravel, or the nearest to it within the grid.
+static struct dig_gravel within_grid(const struct dig_curve_set *const set,
+                                     const struct dig_gravel *const    gravel)
+{
+    struct dig_gravel within = *gravel;
+    for (int a = 0; a < DIG_AXES; a++) {
+        within.value[a] =
+            fmin(fmax(within.value[a], set->axis[a][0]), set->axis[a][set->axis_count[a] - 1]);
+    }
+    return within;
+}
+
+// The same of the gravel's own cell; false where the table has none.
+static bool add_change_of(const struct dig_curve_set *const set,
+                          const struct dig_curve_set *const at, const size_t trajectory,
+                          const struct dig_gravel *const gravel, double sum[DIG_FEATURES])
+{
+    const struct dig_gravel within = within_grid(set, gravel);
+    struct dig_cell         plain;
+    struct dig_cell         cell[SLOTS];
+    if (dig_cell_find(set, &within, trajectory, &plain) != DIG_OK ||
+        dig_cell_find(at, &within, SHALLOWEST, &cell[SHALLOWEST]) != DIG_OK ||
+        dig_cell_find(at, &within, DEEPEST, &cell[DEEPEST]) != DIG_OK) {
+        return false;
+    }
+    add_change(&plain, cell, sum);
+    return true;
+}
+
+// Mean over the entries that have all three.
+static void add_mean_change(const struct dig_curve_set *const set,
+                            const struct dig_curve_set *const at, const size_t trajectory,
+                            double sum[DIG_FEATURES])
+{
+    double entries = 0.0;
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot = e * set->trajectories + trajectory;
+        if (set->packings[slot] > 0 && at->packings[e * SLOTS + SHALLOWEST] > 0 &&
+            at->packings[e * SLOTS + DEEPEST] > 0) {
+            const struct dig_cell plain     = dig_cell_of_entry(set, slot);
+            const struct dig_cell of[SLOTS] = { dig_cell_of_entry(at, e * SLOTS + SHALLOWEST),
+                                                dig_cell_of_entry(at, e * SLOTS + DEEPEST) };
+            add_change(&plain, of, sum);
+            entries += 1.0;
+        }
+    }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        sum[f] /= fmax(entries, 1.0);
+    }
+}
+
+enum dig_status dig_depth_change(const struct dig_curve_set *const set, const size_t trajectory,
+                                 const struct dig_gravel *const gravel, double change[DIG_FEATURES])
+{
+    assert(set != NULL && trajectory < set->trajectories && change != NULL);
+    memset(change, 0, DIG_FEATURES * sizeof change[0]);
+    const struct dig_depths depths = dig_approach_depths(set, trajectory);
+    if (!dig_approach_varies(set, trajectory) || !(depths.most > depths.least)) {
+        return DIG_OK;
+    }
+    void *const memory = malloc(dig_approached_size(set, SLOTS));
+    if (memory == NULL) {
+        return DIG_ENOMEM;
+    }
+    const struct dig_approached_slot slot[SLOTS] = {
+        [SHALLOWEST] = { trajectory, { depths.least, 0.0 }, 1.0 },
+        [DEEPEST]    = { trajectory, { depths.most, 0.0 }, 1.0 },
+    };
+    const struct dig_curve_set *const at = dig_approached_make(set, SLOTS, slot, NULL, memory);
+    if (gravel == NULL || !add_change_of(set, at, trajectory, gravel, change)) {
+        add_mean_change(set, at, trajectory, change);
+    }
+    free(memory);
+    // 1 sigma of what is as likely everywhere between two ends.
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        change[f] /= sqrt(12.0);
+    }
+    return DIG_OK;
+}
+
+enum dig_status dig_depth_added(const struct dig_curve_set *const set, const size_t trajectory,
+                                const struct dig_gravel *const gravel, const double depth,
+                                double added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    assert(set != NULL && trajectory < set->trajectories && gravel != NULL && added != NULL);
+    memset(added, 0, DIG_FORCE_CHANNELS * sizeof added[0]);
+    if (!dig_approach_varies(set, trajectory)) {
+        return DIG_OK;
+    }
+    void *const memory = malloc(dig_approached_size(set, 1));
+    if (memory == NULL) {
+        return DIG_ENOMEM;
+    }
+    const struct dig_depths           depths = dig_approach_depths(set, trajectory);
+    const struct dig_approached_slot  slot   = { trajectory,
+                                                 { fmin(fmax(depth, depths.least), depths.most), 0.0 },
+                                                 1.0 };
+    const struct dig_curve_set *const at     = dig_approached_make(set, 1, &slot, NULL, memory);
+    const struct dig_gravel           within = within_grid(set, gravel);
+    struct dig_cell                   plain;
+    struct dig_cell                   deeper;
+    if (dig_cell_find(set, &within, trajectory, &plain) == DIG_OK &&
+        dig_cell_find(at, &within, 0, &deeper) == DIG_OK) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                added[c][k] = dig_cell_mean(&deeper, (enum dig_channel)c, k) -
+                              dig_cell_mean(&plain, (enum dig_channel)c, k);
+            }
+        }
+    }
+    free(memory);
+    return DIG_OK;
+}

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""What `digloop trace` makes of plain gravel that was dug shallower and deeper than its table was.
+
+    scripts/trace_depths.py TABLE.sqlite [RUNS.sqlite [KIND...]]     (BIN=build/bin)
+
+Of every gravel that RUNS.sqlite (TABLE.sqlite itself by default) holds at several depths a campaign is made of each KIND (plain,
+shallower, deeper, mixed, air): one dig along each trajectory at that depth (air: plain, the
+recording begins a third of the first leg above the ground), a plain simple dig, and a plain real dig held out. It is traced as
+force recordings and as what a ZX200 records. One line a campaign: verdict, what is told of the gravel and whether the interval holds it (+
+and - where the truth lies below and above it), and the held-out error. The last line counts. Some two seconds a campaign.
+"""
+import json
+import os
+import sqlite3
+import subprocess
+import sys
+import tempfile
+
+from coverage_study import AXES, paths_of, run, where
+from depth_study import MACHINE, SCENE, write
+
+KINDS = ("plain", "shallower", "deeper", "mixed", "air")
+AIR_S = 0.2
+
+
+def gravels_of(path):
+    """{gravel: {(trajectory, depth): [bed]}} of those at several depths; a bed: what write() takes behind the path."""
+    db = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
+    along = paths_of(db)
+    gravels = {}
+    for friction, rolling, density, depth, trajectory, *curve in db.execute(
+            "SELECT friction, rolling, density_kgpm3, depth, trajectory, first_s, step_s, windows, curve FROM run "
+            "JOIN ground g ON g.id = ground WHERE effect = '' AND attack_rad = 0 ORDER BY ground, depth, trajectory, packing"):
+        name, start, phases = along[trajectory]
+        beds = gravels.setdefault((friction, rolling, density), {})
+        beds.setdefault((name, depth), []).append((start, phases, depth, *curve))
+    return {gravel: beds for gravel, beds in gravels.items() if len({depth for _, depth in beds}) > 1}
+
+
+def campaign_of(beds, kind):
+    """[(trajectory, bed, role)]"""
+    depths = sorted({depth for _, depth in beds})
+    at = {"plain": [1.0], "air": [1.0], "shallower": depths[:1], "deeper": depths[-1:], "mixed": [depths[0], depths[-1]]}[kind]
+    digs = []
+    for i, name in enumerate(sorted({name for name, _ in beds}, reverse=True)):
+        digs.append((name, beds[name, at[i % len(at)]][0], "identify" if name == "simpleA" else "fit"))
+    digs.append(("simpleA", beds["simpleA", 1.0][-1], "fit"))
+    digs.append(("actual", beds["actual", 1.0][-1], "holdout"))
+    return digs
+
+
+def trace(binaries, table, digs, machine, air_s):
+    with tempfile.TemporaryDirectory() as work:
+        with open(os.path.join(work, "campaign.yaml"), "w", encoding="ascii") as to:
+            to.write(f"scene: {os.path.abspath(SCENE)}\n")
+            if machine:
+                to.write(f"machine: {os.path.abspath(MACHINE)}\n")
+            to.write("recordings:\n")
+            for i, (name, bed, role) in enumerate(digs):
+                dug, told = os.path.join(work, f"dug{i}.csv"), os.path.join(work, f"{i}.csv")
+                write(told if not machine else dug, *bed, air_s=air_s)
+                if machine:
+                    run(f"{binaries}/digrig", "record", dug, "--machine", MACHINE, "--scene", SCENE, "--seed", str(i + 1), "-o", told, "-q")
+                to.write(f"  - {{file: {i}.csv, trajectory: {name}, role: {role}}}\n")
+        answer = os.path.join(work, "trace.json")
+        subprocess.run([f"{binaries}/digloop", "trace", table, work, "--json", answer, "-q"], check=True)
+        with open(answer, encoding="utf-8") as read:
+            return json.load(read)
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    table, runs = sys.argv[1], (sys.argv[2:3] or sys.argv[1:2])[0]
+    binaries = os.environ.get("BIN", "build/bin")
+    campaigns, named, held = [0, 0], [0, 0], [[0] * 3, [0] * 3]
+    for gravel, beds in gravels_of(runs).items():
+        for kind in sys.argv[3:] or KINDS:
+            for machine in (False,) if kind == "air" else (False, True):
+                told = trace(binaries, table, campaign_of(beds, kind), machine, AIR_S if kind == "air" else 0.0)
+                material, text = told["material"], []
+                for i, axis in enumerate(AXES):
+                    mark = where(gravel[i], material[axis]["low"], material[axis]["high"])
+                    held[machine][i] += mark == " "
+                    text.append(f"{material[axis]['value']:.{0 if i == 2 else 2}f}{mark}")
+                campaigns[machine] += 1
+                named[machine] += told["verdict"] != ["none"]
+                print(f"{gravel[0]:.2f}/{gravel[1]:.2f}/{gravel[2]:.0f}  {kind:10s} {'machine' if machine else 'force':8s} "
+                      f"{','.join(told['verdict']):10s} {'/'.join(text):20s} {told['error_after']['holdout']:.3f}", flush=True)
+    for which, kind in enumerate(("force recordings", "a machine's")):
+        print(f"{kind}: {campaigns[which]} campaigns, named {named[which]}; intervals hold: friction {held[which][0]}, "
+              f"rolling friction {held[which][1]}, density {held[which][2]}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,98 @@
+// Tests for closed_loop/model/depth_change.c, on a table whose curves are a known function of
+// depth.
+
+#include "closed_loop/model/depth_change.h"
+#include "tests/approach_table.h"
+
+#include <math.h>
+
+// Dug at .8 and 1.2 by all gravels; a dig resists as the square of its depth.
+static const struct dig_approach way[] = { { 0.8, 0.0 }, { 1.2, 0.0 } };
+
+enum { CORNER = 60 }; // points behind the first leg of either trajectory
+
+static struct approach_table table;
+
+static int set_up(void **state)
+{
+    (void)state;
+    approach_table_init(&table, CUBE_GRAVELS, 2, way, approach_growing, 0.1, 3);
+    return 0;
+}
+
+// Behind the first leg all depths are at one place at one time.
+static void a_deeper_dig_adds_what_the_table_says(void **state)
+{
+    (void)state;
+    const struct dig_curve_set *const set = &table.cube.set;
+    double                            added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    for (size_t t = 0; t < 2; t++) {
+        for (size_t g = 0; g < CUBE_GRAVELS; g++) {
+            const struct dig_curve *const plain = &set->curve[2 * g + t];
+            assert_int_equal(dig_depth_added(set, t, &set->gravel[g], 1.2, added), DIG_OK);
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                for (size_t k = CORNER; k < DIG_CURVE_POINTS; k++) {
+                    assert_close(added[c][k], 0.44 * (double)plain->mean[c][k],
+                                 0.01 * fabs((double)plain->mean[c][CORNER]));
+                }
+            }
+            // Beyond what was dug, as at the end of it.
+            double beyond[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+            assert_int_equal(dig_depth_added(set, t, &set->gravel[g], 2.0, beyond), DIG_OK);
+            assert_memory_equal(beyond, added, sizeof added);
+            assert_int_equal(dig_depth_added(set, t, &set->gravel[g], 1.0, added), DIG_OK);
+            assert_close(added[0][CORNER], 0.0, 1e-6);
+        }
+    }
+}
+
+// 1 sigma of depths that are as likely between .8 and 1.2; the same for every gravel here.
+static void the_change_is_one_sigma_of_the_depths(void **state)
+{
+    (void)state;
+    const struct dig_curve_set *const set = &table.cube.set;
+    for (size_t t = 0; t < 2; t++) {
+        const struct dig_curve *const curve = &set->curve[2 * 3 + t];
+        double                        plain[DIG_FEATURES];
+        double                        amplitude[DIG_FORCE_CHANNELS];
+        double                        mean[DIG_FEATURES];
+        double                        own[DIG_FEATURES];
+        size_t                        from;
+        size_t                        to;
+        dig_features_of_table(curve->mean, plain);
+        dig_features_amplitude(plain, NULL, amplitude);
+        assert_int_equal(dig_depth_change(set, t, NULL, mean), DIG_OK);
+        assert_int_equal(dig_depth_change(set, t, &set->gravel[3], own), DIG_OK);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
+            if (from >= CORNER) {
+                const double whole = (1.44 - 0.64) * plain[f] / amplitude[f / DIG_FEATURE_BINS];
+                assert_close(own[f], whole / sqrt(12.0), 0.005);
+                assert_close(mean[f], own[f], 0.05);
+            }
+        }
+    }
+}
+
+static void a_table_of_one_depth_has_none(void **state)
+{
+    (void)state;
+    double change[DIG_FEATURES] = { 1.0 };
+    double added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    table.cube.set.approaches = NULL;
+    assert_int_equal(dig_depth_change(&table.cube.set, 0, NULL, change), DIG_OK);
+    assert_close(change[0], 0.0, 0.0);
+    assert_int_equal(dig_depth_added(&table.cube.set, 0, &table.cube.gravel[0], 1.2, added),
+                     DIG_OK);
+    assert_close(added[0][200], 0.0, 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(a_deeper_dig_adds_what_the_table_says, set_up),
+        cmocka_unit_test_setup(the_change_is_one_sigma_of_the_depths, set_up),
+        cmocka_unit_test_setup(a_table_of_one_depth_has_none, set_up),
+    };
+    return cmocka_run_group_tests_name("depth_change", tests, NULL, NULL);
+}
