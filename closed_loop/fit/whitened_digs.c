@@ -166,21 +166,28 @@ static double measure_size(const struct dig_whitened_digs *const batch, const si
 }
 
 // What a dig of the group does where its ground lies elsewhere, 1 sigma over the size; zeros where
-// that is known. Digs of a trajectory scatter alike, so one that is open opens all.
+// that is known. Digs of a trajectory scatter alike, so that the most open of them counts for all.
 static enum dig_status open_depth(const struct dig_whitened_digs *const batch, const size_t g,
                                   const double place[DIG_AXES], double change[DIG_FEATURES])
 {
-    bool open = false;
+    double share = 0.0;
     for (size_t i = 0; i < batch->digs; i++) {
-        open = open ||
-               (batch->dig[i].group == g && batch->measured[batch->dig[i].measured].depth_open);
+        share = batch->dig[i].group == g
+                    ? fmax(share, batch->measured[batch->dig[i].measured].depth_share)
+                    : share;
     }
     memset(change, 0, DIG_FEATURES * sizeof change[0]);
+    if (!(share > 0.0)) {
+        return DIG_OK;
+    }
     const struct dig_gravel gravel =
         dig_response_surface_gravel(batch->surface, place != NULL ? place : change);
-    return open ? dig_depth_change(batch->surface->set, batch->group[g].trajectory,
-                                   place != NULL ? &gravel : NULL, change)
-                : DIG_OK;
+    const enum dig_status status = dig_depth_change(batch->surface->set, batch->group[g].trajectory,
+                                                    place != NULL ? &gravel : NULL, change);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        change[f] *= share;
+    }
+    return status;
 }
 
 static enum dig_status fill_group(struct dig_whitened_digs *const batch, const size_t g,
@@ -221,6 +228,7 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
     if (dig_cholesky(n, lower) != DIG_OK) {
         return DIG_ENOMATCH;
     }
+    group->log_det = dig_lower_log_det(n, lower);
     for (size_t k = 0; k < n; k++) {
         group->whiten[k][k] = 1.0 / group->amplitude[group->feature[k] / DIG_FEATURE_BINS];
         dig_lower_solve(n, lower, group->whiten[k]);

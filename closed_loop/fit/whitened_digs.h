@@ -23,6 +23,7 @@ struct dig_whitened_digs_group {
     double whiten[DIG_FEATURES][DIG_FEATURES]; // [k][i]: what a unit of feature[k] adds to y[i]
     double mean[DIG_FEATURES];                 // of the digs' y
     double about;                              // sum of squares of the digs' y about the mean
+    double log_det;                            // of one dig's covariance relative to amplitude
     double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
 };
 

@@ -12,6 +12,9 @@
 
 enum { SHALLOWEST, DEEPEST, SLOTS };
 
+// Only means are asked for, not what they err by.
+static const struct dig_approach_error no_error[DIG_TRAJECTORY_MAX];
+
 // A cell's features.
 static void features_in(const struct dig_cell *const cell, double feature[DIG_FEATURES])
 {
@@ -110,7 +113,7 @@ enum dig_status dig_depth_change(const struct dig_curve_set *const set, const si
         [SHALLOWEST] = { trajectory, { depths.least, 0.0 }, 1.0 },
         [DEEPEST]    = { trajectory, { depths.most, 0.0 }, 1.0 },
     };
-    const struct dig_curve_set *const at = dig_approached_make(set, SLOTS, slot, NULL, memory);
+    const struct dig_curve_set *const at = dig_approached_make(set, SLOTS, slot, no_error, memory);
     if (gravel == NULL || !add_change_of(set, at, trajectory, gravel, change)) {
         add_mean_change(set, at, trajectory, change);
     }
@@ -139,7 +142,7 @@ enum dig_status dig_depth_added(const struct dig_curve_set *const set, const siz
     const struct dig_approached_slot  slot   = { trajectory,
                                                  { fmin(fmax(depth, depths.least), depths.most), 0.0 },
                                                  1.0 };
-    const struct dig_curve_set *const at     = dig_approached_make(set, 1, &slot, NULL, memory);
+    const struct dig_curve_set *const at     = dig_approached_make(set, 1, &slot, no_error, memory);
     const struct dig_gravel           within = within_grid(set, gravel);
     struct dig_cell                   plain;
     struct dig_cell                   deeper;

@@ -19,10 +19,12 @@ struct dig_measured {
     size_t       order;    // place in the campaign, 0 …: digs follow each other in this order
     int          trajectory;
     enum dig_use use;
-    unsigned     pass;       // how often the place was dug, counted from 1
-    bool         depth_open; // the ground may lie higher or lower: a machine's, or of another path
-    double       pace;       // duration of the table's trajectory / of this dig, both at rig scale
+    unsigned     pass;  // how often the place was dug, counted from 1
+    double       pace;  // duration of the table's trajectory / of this dig, both at rig scale
     double       depth; // as its path tells, over the table's; 0: not told. 1 once value is of that
+    // How far its ground may lie elsewhere, of all depths of the table: 0: it is known; 1: anywhere
+    // among them, as a machine's, or of a force recording whose path is another.
+    double depth_share;
 
     double first, last;                           // progress range from contact to exit
     bool   measured[DIG_CHANNELS];                // which of the channels there are

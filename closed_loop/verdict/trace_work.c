@@ -65,23 +65,76 @@ static enum dig_status take_off_depths(const struct dig_trace_work *const w, con
     return status;
 }
 
-enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
-                                struct dig_fitted *const plain, struct dig_error *const error)
+static enum dig_status make_batch(const struct dig_trace_work *const w, const double place[])
+{
+    return dig_whitened_digs_make(w->surface, w->scatter, w->digs, w->measured, w->fit, place,
+                                  w->batch);
+}
+
+static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *const plain)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    enum dig_status status = dig_whitened_digs_make(w->surface, w->scatter, w->digs, w->measured,
-                                                    w->fit, NULL, w->batch);
-    for (int round = 0; round < 2 && status == DIG_OK; round++) {
-        dig_hypothesis_fit(w->batch, w->soil, &none, middle, DIG_FIT_THOROUGH, plain);
-        status = round == 0 ? take_off_depths(w, plain->number) : DIG_OK;
-        if (round == 0 && status == DIG_OK) {
-            status = dig_whitened_digs_make(w->surface, w->scatter, w->digs, w->measured, w->fit,
-                                            plain->number, w->batch);
+    dig_hypothesis_fit(w->batch, w->soil, &none, middle, DIG_FIT_THOROUGH, plain);
+}
+
+static bool set_share(const struct dig_trace_work *const w, const double share)
+{
+    bool any = false;
+    for (size_t i = 0; i < w->digs; i++) {
+        if (w->measured[i].depth_share > 0.0) {
+            w->measured[i].depth_share = share;
+            any                        = true;
         }
     }
-    return status == DIG_OK
-               ? status
-               : dig_error_set(error, DIG_EINVAL,
-                               "the digs of one trajectory have too little measured in common");
+    return any;
+}
+
+// The batch at a gravel, its open depths as wide as makes the digs likeliest: a machine whose
+// ground lies where the table has it is not to pay for others'.
+static enum dig_status open_depths(const struct dig_trace_work *const w, const double place[])
+{
+    static const double shares[] = { 1.0, 0.5, 0.25, 0.125 };
+    double              best     = 1.0;
+    double              least    = INFINITY;
+    enum dig_status     status   = DIG_OK;
+    if (!set_share(w, best)) {
+        return make_batch(w, place);
+    }
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0] && status == DIG_OK; i++) {
+        struct dig_fitted plain;
+        (void)set_share(w, shares[i]);
+        status = make_batch(w, place);
+        if (status == DIG_OK) {
+            fit_plain(w, &plain);
+            double misfit = plain.misfit;
+            for (size_t g = 0; g < w->batch->groups; g++) {
+                misfit += (double)w->batch->group[g].digs * w->batch->group[g].log_det;
+            }
+            best  = misfit < least ? shares[i] : best;
+            least = fmin(misfit, least);
+        }
+    }
+    (void)set_share(w, best);
+    return status == DIG_OK ? make_batch(w, place) : status;
+}
+
+enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
+                                struct dig_fitted *const plain, struct dig_error *const error)
+{
+    (void)set_share(w, 1.0);
+    enum dig_status status = make_batch(w, NULL);
+    if (status == DIG_OK) {
+        fit_plain(w, plain);
+        status = take_off_depths(w, plain->number);
+    }
+    if (status == DIG_OK) {
+        status = open_depths(w, plain->number);
+    }
+    if (status != DIG_OK) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "the digs of one trajectory have too little measured in common");
+    }
+    fit_plain(w, plain);
+    return DIG_OK;
 }

@@ -14,4 +14,5 @@ check "and their intervals hold, mostly" [ "$((held))" -ge 12 ]
 scripts/trace_depths.py tables/product.sqlite tables/product.sqlite mixed >"$work/out" 2>"$work/err" || cat "$work/err"
 sed 's/^/      /' "$work/out"
 check "nor has what was dug at the table's own depths" [ "$(grep -c 'campaigns, named 0;' "$work/out")" = 2 ]
+check "where a path tells the depth the density is told" grep -q '^force recordings: .* density 3$' "$work/out"
 finish

@@ -64,8 +64,8 @@ static void tell_depth(const struct dig_curve_set *const set,
     struct dig_observed as_dug;
     if (dig_observe_as_dug(set, recording, &as_dug, NULL) == DIG_OK &&
         as_dug.trajectory == m->trajectory && fabs(as_dug.made.depth - 1.0) > same) {
-        m->depth      = as_dug.made.depth;
-        m->depth_open = true;
+        m->depth       = as_dug.made.depth;
+        m->depth_share = 1.0;
     }
 }
 
