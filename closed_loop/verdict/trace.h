@@ -84,7 +84,8 @@ struct dig_trace_settings dig_trace_settings_default(void);
 /// Traces. table is the file set was loaded from: its runs tell how one dig scatters; NULL: the
 /// curves' standard deviations do. effects may be NULL: only effects with a reduced form compete
 /// then. machine may be NULL: the digs were measured by a force sensor. measured[].machine is
-/// filled when an effect of the machine was found. Seconds of one core. DIG_EINVAL: fewer than two
+/// filled when an effect of the machine was found; of a dig at another depth that its path tells,
+/// value becomes that of the plain dig. Seconds of one core. DIG_EINVAL: fewer than two
 /// fit or identify digs, a trajectory that the set lacks; *error says so. DIG_ENOMEM. Writes *trace
 /// on success only.
 DIG_MUST_CHECK enum dig_status dig_trace_run(const struct dig_curve_set *set, const char *table,
