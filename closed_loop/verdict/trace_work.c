@@ -1,6 +1,7 @@
 #include "closed_loop/verdict/trace_work.h"
 
 #include "closed_loop/model/depth_change.h"
+#include "estimator/approach/approach_slots.h"
 
 #include <math.h>
 
@@ -98,7 +99,7 @@ static enum dig_status open_depths(const struct dig_trace_work *const w, const d
     double              best     = 1.0;
     double              least    = INFINITY;
     enum dig_status     status   = DIG_OK;
-    if (!set_share(w, best)) {
+    if (!set_share(w, best) || !dig_approach_varies_any(w->set)) {
         return make_batch(w, place);
     }
     for (size_t i = 0; i < sizeof shares / sizeof shares[0] && status == DIG_OK; i++) {
