@@ -4,19 +4,18 @@
     scripts/trace_depths.py TABLE.sqlite [RUNS.sqlite [KIND...]]     (BIN=build/bin)
 
 Of every gravel that RUNS.sqlite (TABLE.sqlite itself by default) holds at several depths a campaign is made of each KIND (plain,
-shallower, deeper, mixed, air): one dig along each trajectory at that depth (air: plain, the
-recording begins a third of the first leg above the ground), a plain simple dig, and a plain real dig held out. It is traced as
-force recordings and as what a ZX200 records. One line a campaign: verdict, what is told of the gravel and whether the interval holds it (+
-and - where the truth lies below and above it), and the held-out error. The last line counts. Some two seconds a campaign.
+shallower, deeper, mixed, air): one dig along each trajectory at that depth (air: plain, the recording begins a third of the first leg above
+the ground), a plain simple dig, and a plain real dig held out. It is traced as force recordings and as what a ZX200 records. One line a
+campaign: verdict, what is told of the gravel and whether the interval holds it (+ and - where the truth lies below and above it), the
+held-out error and the depths that were taken off. The last lines count. Some two seconds a campaign.
 """
 import json
 import os
-import sqlite3
 import subprocess
 import sys
 import tempfile
 
-from coverage_study import AXES, paths_of, run, where
+from coverage_study import AXES, digs_of, run, where
 from depth_study import MACHINE, SCENE, write
 
 KINDS = ("plain", "shallower", "deeper", "mixed", "air")
@@ -25,15 +24,9 @@ AIR_S = 0.2
 
 def gravels_of(path):
     """{gravel: {(trajectory, depth): [bed]}} of those at several depths; a bed: what write() takes behind the path."""
-    db = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
-    along = paths_of(db)
     gravels = {}
-    for friction, rolling, density, depth, trajectory, *curve in db.execute(
-            "SELECT friction, rolling, density_kgpm3, depth, trajectory, first_s, step_s, windows, curve FROM run "
-            "JOIN ground g ON g.id = ground WHERE effect = '' AND attack_rad = 0 ORDER BY ground, depth, trajectory, packing"):
-        name, start, phases = along[trajectory]
-        beds = gravels.setdefault((friction, rolling, density), {})
-        beds.setdefault((name, depth), []).append((start, phases, depth, *curve))
+    for (*gravel, _), depth, (name, start, phases, *curve) in digs_of(path, "1"):
+        gravels.setdefault(tuple(gravel), {}).setdefault((name, depth), []).append((start, phases, depth, *curve))
     return {gravel: beds for gravel, beds in gravels.items() if len({depth for _, depth in beds}) > 1}
 
 
@@ -86,7 +79,8 @@ def main():
                 campaigns[machine] += 1
                 named[machine] += told["verdict"] != ["none"]
                 print(f"{gravel[0]:.2f}/{gravel[1]:.2f}/{gravel[2]:.0f}  {kind:10s} {'machine' if machine else 'force':8s} "
-                      f"{','.join(told['verdict']):10s} {'/'.join(text):20s} {told['error_after']['holdout']:.3f}", flush=True)
+                      f"{','.join(told['verdict']):10s} {'/'.join(text):20s} {told['error_after']['holdout']:.3f}  "
+                      f"{','.join(format(dig['depth'], '.2f') for dig in told['residuals'] if dig['depth'] != 1)}", flush=True)
     for which, kind in enumerate(("force recordings", "a machine's")):
         print(f"{kind}: {campaigns[which]} campaigns, named {named[which]}; intervals hold: friction {held[which][0]}, "
               f"rolling friction {held[which][1]}, density {held[which][2]}")

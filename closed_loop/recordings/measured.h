@@ -21,7 +21,8 @@ struct dig_measured {
     enum dig_use use;
     unsigned     pass;  // how often the place was dug, counted from 1
     double       pace;  // duration of the table's trajectory / of this dig, both at rig scale
-    double       depth; // as its path tells, over the table's; 0: not told. 1 once value is of that
+    double       depth; // over the table's, as its path tells; 0: as the table's, or not told
+    bool         depth_taken_off; // value is of the plain dig
     // How far its ground may lie elsewhere, of all depths of the table: 0: it is known; 1: anywhere
     // among them, as a machine's, or of a force recording whose path is another.
     double depth_share;

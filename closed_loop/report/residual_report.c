@@ -32,6 +32,7 @@ static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
     dig_json_text(to, ", ", "trajectory", dig->trajectory);
     (void)fprintf(to, ", \"role\": \"%s\", \"pass\": %u", dig_residuals_use_name(dig->use),
                   dig->pass);
+    dig_json_member(to, ", ", "depth", dig->depth);
     dig_json_member(to, ", \"air\": {", "sigmas", dig->air_sigmas);
     (void)fputs("}", to);
     for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {

@@ -50,7 +50,8 @@ static enum dig_status take_off_depth(const struct dig_trace_work *const w, cons
             dig->value[c][k] -= is_deeper && dig->measured[c] ? added[c][k] : 0.0;
         }
     }
-    dig->depth = 1.0;
+    dig->depth           = is_deeper ? dig->depth : 0.0;
+    dig->depth_taken_off = is_deeper;
     return DIG_OK;
 }
 
@@ -59,7 +60,7 @@ static enum dig_status take_off_depths(const struct dig_trace_work *const w, con
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         struct dig_measured *const dig = &w->measured[i];
-        if (dig->depth > 0.0 && fabs(dig->depth - 1.0) > 0.0) {
+        if (dig->depth > 0.0 && !dig->depth_taken_off) {
             status = take_off_depth(w, place, dig);
         }
     }

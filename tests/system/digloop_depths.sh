@@ -6,6 +6,7 @@
 scripts/trace_depths.py tables/product.sqlite tests/data/product/depths.sqlite deeper air >"$work/out" 2>"$work/err" || cat "$work/err"
 sed 's/^/      /' "$work/out"
 check "every kind of campaign is traced" [ "$(grep -c '^0.60/0.45/2300' "$work/out")" = 3 ]
+check "their depths are told" grep -q "deeper  *force .* 1.15,1.15$" "$work/out"
 check "no force recording of it has a name" grep -q "^force recordings: 2 campaigns, named 0;" "$work/out"
 check "nor has a machine's" grep -q "^a machine's: 1 campaigns, named 0;" "$work/out"
 held=$(sed -nE 's/^force recordings: .* friction ([0-9]+), rolling friction ([0-9]+), density ([0-9]+)$/\1 + \2 + \3/p' "$work/out")
