@@ -127,7 +127,7 @@ static inline double payload_N(const struct dig_rig_row *const row, const int j,
     for (int way = 0; way < 2; way++) {
         struct dig_rig_joints at = row->joints;
         at.rad[j] += way == 0 ? -1e-5 : 1e-5;
-        high[way] = dig_rig_com_m(&machine, &at, DIG_JOINT_BUCKET).y;
+        high[way] = dig_rig_front_at(&machine, &at).com_m[DIG_JOINT_BUCKET].y;
     }
     assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
                      DIG_OK);

@@ -151,18 +151,17 @@ static void cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links(void *
                 0.5 * (row->soil.M_Nm + was->soil.M_Nm) * (row->pose.phi_rad - was->pose.phi_rad);
         }
 
-        double height_J = 0.0;
-        double speed_J  = 0.0;
+        const struct dig_rig_front here     = dig_rig_front_at(&machine, &row->joints);
+        const struct dig_rig_front was      = dig_rig_front_at(&machine, &track.row[i - 1].joints);
+        const struct dig_rig_front next     = dig_rig_front_at(&machine, &track.row[i + 1].joints);
+        const double               span_s   = 2.0 * track.step_s;
+        double                     height_J = 0.0;
+        double                     speed_J  = 0.0;
         for (int j = 0; j < DIG_JOINTS; j++) {
-            const enum dig_joint  link    = (enum dig_joint)j;
-            const struct dig_vec2 here    = dig_rig_com_m(&machine, &row->joints, link);
-            const struct dig_vec2 a       = dig_rig_com_m(&machine, &track.row[i - 1].joints, link);
-            const struct dig_vec2 b       = dig_rig_com_m(&machine, &track.row[i + 1].joints, link);
-            const double          v_mps   = hypot(b.x - a.x, b.y - a.y) / (2.0 * track.step_s);
-            const double          w_radps = (dig_rig_attitude_rad(&track.row[i + 1].joints, link) -
-                                    dig_rig_attitude_rad(&track.row[i - 1].joints, link)) /
-                                   (2.0 * track.step_s);
-            height_J += machine.link[j].mass_kg * 9.81 * here.y;
+            const struct dig_vec2 moved   = dig_vec2_sub(next.com_m[j], was.com_m[j]);
+            const double          v_mps   = dig_vec2_norm(moved) / span_s;
+            const double          w_radps = (next.attitude_rad[j] - was.attitude_rad[j]) / span_s;
+            height_J += machine.link[j].mass_kg * 9.81 * here.com_m[j].y;
             speed_J += 0.5 * machine.link[j].mass_kg * v_mps * v_mps +
                        0.5 * machine.link[j].inertia_kgm2 * w_radps * w_radps;
         }

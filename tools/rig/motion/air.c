@@ -60,7 +60,7 @@ static void put(const struct dig_machine *const machine, const struct stop *cons
             (1.0 - done) * angle_rad(machine, from, j) + done * angle_rad(machine, to, j);
     }
     path->frame[path->frames++] =
-        (struct dig_rig_frame){ .pose = dig_rig_forward(machine, &joints) };
+        (struct dig_rig_frame){ .pose = dig_rig_front_at(machine, &joints).bucket };
 }
 
 enum dig_status dig_rig_air_build(const struct dig_machine *const machine,

@@ -6,11 +6,15 @@
 
 static const double difference_rad = 1e-5;
 
+// A vector that is given in a frame with that x axis.
+static struct dig_vec2 along(const struct dig_vec2 v, const struct dig_vec2 x_axis)
+{
+    return (struct dig_vec2){ x_axis.x * v.x - x_axis.y * v.y, x_axis.y * v.x + x_axis.x * v.y };
+}
+
 static struct dig_vec2 turned(const struct dig_vec2 v, const double angle_rad)
 {
-    const double c = cos(angle_rad);
-    const double s = sin(angle_rad);
-    return (struct dig_vec2){ c * v.x - s * v.y, s * v.x + c * v.y };
+    return along(v, (struct dig_vec2){ cos(angle_rad), sin(angle_rad) });
 }
 
 static struct dig_vec2 sum(const struct dig_vec2 a, const struct dig_vec2 b)
@@ -18,43 +22,23 @@ static struct dig_vec2 sum(const struct dig_vec2 a, const struct dig_vec2 b)
     return dig_vec2_add_scaled(a, 1.0, b);
 }
 
-double dig_rig_attitude_rad(const struct dig_rig_joints *const joints, const enum dig_joint joint)
+// From pin to pin; each link turns by its joint against the link before it.
+struct dig_rig_front dig_rig_front_at(const struct dig_machine *const    machine,
+                                      const struct dig_rig_joints *const joints)
 {
-    double angle_rad = 0.0;
-    for (int j = 0; j <= (int)joint; j++) {
+    struct dig_rig_front front;
+    struct dig_vec2      pin       = { 0.0, 0.0 };
+    double               angle_rad = 0.0;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        const struct dig_link *const link = &machine->link[j];
         angle_rad += joints->rad[j];
+        const struct dig_vec2 x_axis = { cos(angle_rad), sin(angle_rad) };
+        front.attitude_rad[j]        = angle_rad;
+        front.com_m[j]               = sum(pin, along(link->com_m, x_axis));
+        front.bucket = (struct dig_rig_pose){ .X_m = pin.x, .Z_m = pin.y, .phi_rad = angle_rad };
+        pin          = sum(pin, along((struct dig_vec2){ link->length_m, 0.0 }, x_axis));
     }
-    return angle_rad;
-}
-
-// Origin of a link's frame: the pins of all links before it, one after the other.
-static struct dig_vec2 origin_m(const struct dig_machine *const    machine,
-                                const struct dig_rig_joints *const joints, const int link)
-{
-    struct dig_vec2 at = { 0.0, 0.0 };
-    for (int j = 0; j < link; j++) {
-        const struct dig_vec2 along = { machine->link[j].length_m, 0.0 };
-        at = sum(at, turned(along, dig_rig_attitude_rad(joints, (enum dig_joint)j)));
-    }
-    return at;
-}
-
-struct dig_vec2 dig_rig_com_m(const struct dig_machine *const    machine,
-                              const struct dig_rig_joints *const joints, const enum dig_joint joint)
-{
-    return sum(origin_m(machine, joints, (int)joint),
-               turned(machine->link[joint].com_m, dig_rig_attitude_rad(joints, joint)));
-}
-
-struct dig_rig_pose dig_rig_forward(const struct dig_machine *const    machine,
-                                    const struct dig_rig_joints *const joints)
-{
-    const struct dig_vec2 pin = origin_m(machine, joints, DIG_JOINT_BUCKET);
-    return (struct dig_rig_pose){
-        .X_m     = pin.x,
-        .Z_m     = pin.y,
-        .phi_rad = dig_rig_attitude_rad(joints, DIG_JOINT_BUCKET),
-    };
+    return front;
 }
 
 enum dig_status dig_rig_inverse(const struct dig_machine *const  machine,

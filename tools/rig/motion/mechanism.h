@@ -22,15 +22,15 @@ struct dig_rig_pose {
     double X_m, Z_m, phi_rad;
 };
 
-/// Direction of link j's +x against machine X: the sum of the joint angles up to j.
-double dig_rig_attitude_rad(const struct dig_rig_joints *joints, enum dig_joint joint);
+/// Where all of the front is, machine frame.
+struct dig_rig_front {
+    double              attitude_rad[DIG_JOINTS]; // of a link's +x against machine X
+    struct dig_vec2     com_m[DIG_JOINTS];
+    struct dig_rig_pose bucket;
+};
 
-/// Centre of mass of one link, machine frame, m.
-struct dig_vec2 dig_rig_com_m(const struct dig_machine    *machine,
-                              const struct dig_rig_joints *joints, enum dig_joint joint);
-
-struct dig_rig_pose dig_rig_forward(const struct dig_machine    *machine,
-                                    const struct dig_rig_joints *joints);
+struct dig_rig_front dig_rig_front_at(const struct dig_machine    *machine,
+                                      const struct dig_rig_joints *joints);
 
 /// The joint angles of a pose, with the arm pin above the line boom foot - bucket pin, which is the
 /// only side an excavator's arm can be on. DIG_EUNREACHABLE when the pin is out of reach, or nearer

@@ -14,15 +14,20 @@ struct found {
     struct dig_rig_margin margin;
 };
 
-// The least over the path, or something not above `enough` as soon as it is sure to be.
+// The least over the path, or something not above `enough` as soon as it is sure to be. *first: the
+// frame to begin at, and then that of the least: what stops one place stops most of its neighbours.
 static enum dig_status least_margin(const struct dig_machine *const  machine,
                                     const struct dig_rig_path *const path, const double X_m,
-                                    const double Z_m, const double enough,
+                                    const double Z_m, const double enough, size_t *const first,
                                     struct found *const found)
 {
     const struct dig_rig_motion still = { .turn_radps2 = { 0.0 } };
+    const size_t                begin = *first;
+    const size_t                tried = (path->frames + stride - 1) / stride;
     struct found                least = { .score = INFINITY };
-    for (size_t i = 0; i < path->frames; i += stride) {
+    for (size_t n = 0; n < tried; n++) {
+        const size_t        at   = (begin + n) % tried;
+        const size_t        i    = at * stride;
         struct dig_rig_pose pose = path->frame[i].pose;
         pose.X_m += X_m;
         pose.Z_m += Z_m;
@@ -30,6 +35,7 @@ static enum dig_status least_margin(const struct dig_machine *const  machine,
         const enum dig_status status =
             dig_rig_state_solve(machine, &pose, &still, &path->frame[i].soil, &state);
         if (status != DIG_OK) {
+            *first = at;
             return status;
         }
         const bool         fits = state.mechanical.share > 0.0;
@@ -38,7 +44,8 @@ static enum dig_status least_margin(const struct dig_machine *const  machine,
             .margin = fits ? state.nearest : state.mechanical,
         };
         if (!(here.score >= least.score)) {
-            least = here;
+            least  = here;
+            *first = at;
         }
         if (!(least.score > enough)) {
             break;
@@ -64,6 +71,7 @@ enum dig_status dig_rig_placement_find(const struct dig_machine *const  machine,
 
     struct dig_rig_placement best       = { .X_m = 0.0 };
     double                   best_score = -INFINITY;
+    size_t                   first      = 0;
     for (size_t s = 0; s < sizeof surface_m / sizeof surface_m[0]; s++) {
         const double penalty = per_metre * fabs(surface_m[s]);
         for (int percent = 25; percent < 100; percent++) {
@@ -71,7 +79,7 @@ enum dig_status dig_rig_placement_find(const struct dig_machine *const  machine,
             const double          Z_m = level_m + surface_m[s];
             struct found          found;
             const enum dig_status status =
-                least_margin(machine, path, X_m, Z_m, best_score + penalty, &found);
+                least_margin(machine, path, X_m, Z_m, best_score + penalty, &first, &found);
             if (status == DIG_OK && found.score - penalty > best_score) {
                 best = (struct dig_rig_placement){ .X_m = X_m, .Z_m = Z_m, .margin = found.margin };
                 best_score = found.score - penalty;

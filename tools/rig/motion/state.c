@@ -66,17 +66,17 @@ static void take_pressure_margins(const struct dig_machine *const       machine,
                                   struct dig_rig_margin *const          nearest)
 {
     for (int j = 0; j < DIG_JOINTS; j++) {
-        const bool            head   = pressures->head_Pa[j] > pressures->rod_Pa[j];
-        const double          Pa     = head ? pressures->head_Pa[j] : pressures->rod_Pa[j];
-        const double          bound  = machine->cylinder[j].relief_Pa;
-        struct dig_rig_margin margin = {
+        const bool                  head   = pressures->head_Pa[j] > pressures->rod_Pa[j];
+        const double                Pa     = head ? pressures->head_Pa[j] : pressures->rod_Pa[j];
+        const double                bound  = machine->cylinder[j].relief_Pa;
+        const struct dig_rig_margin margin = {
             .share = 1.0 - Pa / bound,
             .limit = DIG_RIG_LIMIT_RELIEF,
             .joint = (enum dig_joint)j,
             .value = Pa,
             .bound = bound,
+            .end   = head ? "head" : "rod",
         };
-        (void)snprintf(margin.end, sizeof margin.end, "%s", head ? "head" : "rod");
         take_smaller(nearest, margin);
     }
 }
@@ -102,10 +102,11 @@ look_at_ground(const struct dig_machine *const machine, const struct dig_rig_joi
         { machine->weight_X_m, 0.0, 0.0, -machine->weight_N, 0.0 },
         { pose->X_m, pose->Z_m, soil->FX_N, soil->FZ_N, soil->M_Nm },
     };
-    double weight_N = machine->weight_N;
+    const struct dig_rig_front front    = dig_rig_front_at(machine, joints);
+    double                     weight_N = machine->weight_N;
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_link *const link    = &machine->link[j];
-        const struct dig_vec2        com     = dig_rig_com_m(machine, joints, (enum dig_joint)j);
+        const struct dig_vec2        com     = front.com_m[j];
         const double                 mass_kg = link->mass_kg;
         loads[2 + j]                         = (struct load){
                                     .X_m  = com.x,

@@ -23,10 +23,10 @@ enum dig_rig_limit {
 struct dig_rig_margin {
     double             share;
     enum dig_rig_limit limit;
-    enum dig_joint     joint;  // of JOINT, STROKE, LEVER, RELIEF
-    double             value;  // what was reached …
-    double             bound;  // … and what is allowed, in the limit's unit
-    char               end[8]; // "head", "rod"; "front", "rear"
+    enum dig_joint     joint; // of JOINT, STROKE, LEVER, RELIEF
+    double             value; // what was reached …
+    double             bound; // … and what is allowed, in the limit's unit
+    const char        *end;   // "head", "rod"; "front", "rear"
 };
 
 struct dig_rig_state {

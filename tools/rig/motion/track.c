@@ -73,12 +73,12 @@ static enum dig_status move_links(const struct dig_machine *const  machine,
     const double        span_s   = (double)reach * DIG_RIG_STEP_s;
     const double        per_s2   = 1.0 / (span_s * span_s);
     static const double share[3] = { 1.0, -2.0, 1.0 };
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        for (int k = 0; k < 3; k++) {
-            const struct dig_vec2 com = dig_rig_com_m(machine, &joints[k], (enum dig_joint)j);
-            result.com_mps2[j] = dig_vec2_add_scaled(result.com_mps2[j], share[k] * per_s2, com);
-            result.turn_radps2[j] +=
-                share[k] * per_s2 * dig_rig_attitude_rad(&joints[k], (enum dig_joint)j);
+    for (int k = 0; k < 3; k++) {
+        const struct dig_rig_front front = dig_rig_front_at(machine, &joints[k]);
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            result.com_mps2[j] =
+                dig_vec2_add_scaled(result.com_mps2[j], share[k] * per_s2, front.com_m[j]);
+            result.turn_radps2[j] += share[k] * per_s2 * front.attitude_rad[j];
         }
     }
     *motion = result;

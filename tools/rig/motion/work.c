@@ -17,23 +17,20 @@ static double turning_work_Nm(const struct dig_machine *const    machine,
     ahead.rad[j] += step_rad;
     behind.rad[j] -= step_rad;
 
-    double work_J = 0.0;
+    const struct dig_rig_front to     = dig_rig_front_at(machine, &ahead);
+    const struct dig_rig_front from   = dig_rig_front_at(machine, &behind);
+    double                     work_J = 0.0;
     for (int k = 0; k < DIG_JOINTS; k++) {
-        const enum dig_joint  link  = (enum dig_joint)k;
-        const struct dig_vec2 moved = dig_vec2_sub(dig_rig_com_m(machine, &ahead, link),
-                                                   dig_rig_com_m(machine, &behind, link));
-        const double          turned_rad =
-            dig_rig_attitude_rad(&ahead, link) - dig_rig_attitude_rad(&behind, link);
-        const double mass_kg = machine->link[k].mass_kg;
+        const struct dig_vec2 moved      = dig_vec2_sub(to.com_m[k], from.com_m[k]);
+        const double          turned_rad = to.attitude_rad[k] - from.attitude_rad[k];
+        const double          mass_kg    = machine->link[k].mass_kg;
         work_J += -mass_kg * motion->com_mps2[k].x * moved.x;
         work_J += -mass_kg * (DIG_RIG_GRAVITY_mps2 + motion->com_mps2[k].y) * moved.y;
         work_J += -machine->link[k].inertia_kgm2 * motion->turn_radps2[k] * turned_rad;
     }
-
-    const struct dig_rig_pose to   = dig_rig_forward(machine, &ahead);
-    const struct dig_rig_pose from = dig_rig_forward(machine, &behind);
-    work_J += soil->FX_N * (to.X_m - from.X_m) + soil->FZ_N * (to.Z_m - from.Z_m) +
-              soil->M_Nm * (to.phi_rad - from.phi_rad);
+    work_J += soil->FX_N * (to.bucket.X_m - from.bucket.X_m) +
+              soil->FZ_N * (to.bucket.Z_m - from.bucket.Z_m) +
+              soil->M_Nm * (to.bucket.phi_rad - from.bucket.phi_rad);
     return work_J / (2.0 * step_rad);
 }
 
