@@ -195,9 +195,9 @@ enum dig_status dig_setup_explain(const enum dig_status status, struct dig_error
     case DIG_EUNREACHABLE:
         return dig_error_set(error, status,
                              "packing.solid_fraction: the grains do not fit, expected less");
+    case DIG_ESTALE: return dig_error_set(error, status, "stopped before its end");
     case DIG_OK:
     case DIG_ENOMATCH:
-    case DIG_ESTALE:
     case DIG_ESCHEMA:
     case DIG_ENOMEM:
     case DIG_EIO: break;
