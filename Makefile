@@ -220,7 +220,8 @@ check-unit: $(test_bins) ## The unit tests alone
 
 ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
 # Tests that repeat, for statistics or in larger beds, what smaller ones do once: minutes under a sanitizer, for nothing new.
-statistics := $(foreach t,coverage effect_noise_shipped layers_shipped pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
+statistics := $(foreach t,approaches_shipped coverage design_shipped effect_noise_shipped \
+                few_packings layers_shipped noise_shipped pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
