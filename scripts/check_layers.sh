@@ -54,7 +54,7 @@ offline_dem/cuda
 closed_loop/numeric    | chance dense levenberg vectors
 closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise
                        regressors
-closed_loop/model      | candidate depth_change response_surface scatter soil soil_fit
+closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs
 closed_loop/machine    machine_check machine_side | machine_lines machine_motion machine_side_private
 closed_loop/search     | cross_validation portmanteau search search_work unlisted

@@ -30,20 +30,20 @@ def paths_of(db):
 
 
 def digs_of(path, where):
-    """((friction, rolling, density, packing), depth, (trajectory, start, phases, first_s, step_s, windows, curve)) of plain runs, by ground,
-    depth, packing and trajectory."""
+    """((friction, rolling, density, packing), (depth, attack_rad), (trajectory, start, phases, first_s, step_s, windows, curve)) of plain runs, by
+    ground, depth, attack, packing and trajectory."""
     db = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
     along = paths_of(db)
-    for friction, rolling, density, packing, depth, trajectory, *curve in db.execute(
-            "SELECT friction, rolling, density_kgpm3, packing, depth, trajectory, first_s, step_s, windows, curve FROM run JOIN ground g "
-            f"ON g.id = ground WHERE effect = '' AND attack_rad = 0 AND {where} ORDER BY ground, depth, packing, trajectory"):
-        yield (friction, rolling, density, packing), depth, (*along[trajectory], *curve)
+    for friction, rolling, density, packing, depth, attack_rad, trajectory, *curve in db.execute(
+            "SELECT friction, rolling, density_kgpm3, packing, depth, attack_rad, trajectory, first_s, step_s, windows, curve FROM run "
+            f"JOIN ground g ON g.id = ground WHERE effect = '' AND {where} ORDER BY ground, depth, attack_rad, packing, trajectory"):
+        yield (friction, rolling, density, packing), (depth, attack_rad), (*along[trajectory], *curve)
 
 
 def beds_of(path):
     """Truth and digs of every bed at depth 1."""
     beds = {}
-    for truth, _, dig in digs_of(path, "depth = 1"):
+    for truth, _, dig in digs_of(path, "depth = 1 AND attack_rad = 0"):
         beds.setdefault(truth, []).append(dig)
     return beds.items()
 

@@ -10,7 +10,7 @@
 
 // How far along the dig, in bins, each part's factor stays alike, and how alike it is on two
 // channels.
-static const double alike_bins[DIG_COMMON_ERROR_PARTS] = { 2.5, 2.5, 0.7 };
+static const double alike_bins[DIG_COMMON_ERROR_PARTS] = { 2.5, 2.5, 0.7, 2.5 };
 static const double alike_channels                     = 0.7;
 
 // R of a part between two features that lie so many bins apart on one channel. The ridge keeps it
@@ -146,6 +146,9 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
         double                lower[DIG_FEATURES * DIG_FEATURES];
         double                factor[DIG_FEATURES];
         const struct likeness r = likeness_of(p);
+        if (is_none(error->size[p])) {
+            continue;
+        }
         for (size_t a = 0; a < DIG_FEATURES; a++) {
             factor[a] = dig_chance_normal(seed);
             for (size_t b = 0; b <= a; b++) {

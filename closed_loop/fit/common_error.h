@@ -6,9 +6,9 @@
 //
 // even: the surface's and the templates' own variance, beds that repeat. A part is what a model
 // may get wrong by a factor that changes smoothly along the dig: what two DEM codes make of a plain
-// dig, what a template makes of an effect. size: one sigma of it, feature by feature; R: how alike
-// the factor is at two bins and on two channels; W: the whitening. A shift is what the table may
-// have at another place: closed_loop/fit/shifts.h.
+// dig, what a template makes of an effect, what is said of another approach. size: one sigma of it,
+// feature by feature; R: how alike the factor is at two bins and on two channels; W: the whitening.
+// A shift is what the table may have at another place: closed_loop/fit/shifts.h.
 
 #ifndef DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
 #define DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
@@ -17,7 +17,12 @@
 
 #include <stdint.h>
 
-#define DIG_COMMON_ERROR_PARTS 3 // two that change slowly along the dig, one from bin to bin
+#define DIG_COMMON_ERROR_PARTS 4 // all but the third change slowly along the dig
+
+/// What a gravel does at another approach, over what others nearby say of it, is off by 1 sigma of
+/// this share: in tables/product.sqlite a gravel's change from what the two others' mean says, root
+/// mean square over three trajectories and four approaches, without the beds' own scatter.
+#define DIG_COMMON_ERROR_OF_APPROACHES 0.3
 
 struct dig_common_error {
     double            even;

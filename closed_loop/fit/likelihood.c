@@ -222,12 +222,13 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
         const double                                templates =
             dig_forward_added(l->batch, g, l->soil, at, l->hypothesis, x, added);
         error->even =
-            rough + group->repeats + size2 * templates +
+            rough + group->repeats + group->added_noise + size2 * templates +
             size2 * factor * dig_response_surface_noise(l->soil->surface, group->trajectory, x);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             error->size[0][f] = hypot(of_codes, unlisted) * at->feature[f];
             error->size[1][f] = unlike * added[f];
             error->size[2][f] = quick * unlisted * at->feature[f];
+            error->size[3][f] = DIG_COMMON_ERROR_OF_APPROACHES * group->added[f];
         }
         dig_shifts_fill(l->batch, g, l->soil, l->hypothesis, x, at, added, &error->shift);
         dig_common_error_build(group, error);

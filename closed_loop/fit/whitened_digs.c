@@ -1,7 +1,7 @@
 #include "closed_loop/fit/whitened_digs.h"
 
 #include "closed_loop/fit/same_bed.h"
-#include "closed_loop/model/depth_change.h"
+#include "closed_loop/model/approach_change.h"
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/numeric/vectors.h"
 
@@ -313,11 +313,27 @@ void dig_whitened_digs_summarise(struct dig_whitened_digs *const batch)
     }
 }
 
-static void count_beds(struct dig_whitened_digs *const batch)
+// What the digs' number does not average out.
+static void fill_shared(struct dig_whitened_digs *const batch)
 {
     for (size_t g = 0; g < batch->groups; g++) {
         struct dig_whitened_digs_group *const group = &batch->group[g];
-        group->repeats = 1.0 / (double)dig_same_bed_count(batch, g) - 1.0 / (double)group->digs;
+        double                                sigma = 0.0;
+        memset(group->added, 0, sizeof group->added);
+        for (size_t i = 0; i < batch->digs; i++) {
+            const struct dig_added *const added = &batch->measured[batch->dig[i].measured].added;
+            double                        feature[DIG_FEATURES];
+            if (batch->dig[i].group != g || !(added->noise > 0.0)) {
+                continue;
+            }
+            sigma += sqrt(added->noise) / (double)group->digs;
+            dig_features_of((const double(*)[DIG_CURVE_POINTS])added->value, feature);
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                group->added[f] += feature[f] / (double)group->digs;
+            }
+        }
+        group->added_noise = sigma * sigma;
+        group->repeats     = 1.0 / (double)dig_same_bed_count(batch, g) - 1.0 / (double)group->digs;
     }
 }
 
@@ -354,7 +370,7 @@ enum dig_status dig_whitened_digs_make(const struct dig_response_surface *const 
     }
     if (status == DIG_OK) {
         dig_whitened_digs_summarise(batch);
-        count_beds(batch);
+        fill_shared(batch);
     }
     return status;
 }
@@ -408,5 +424,5 @@ void dig_whitened_digs_leave_out(const struct dig_whitened_digs *const batch, co
         }
     }
     dig_whitened_digs_summarise(others);
-    count_beds(others);
+    fill_shared(others);
 }

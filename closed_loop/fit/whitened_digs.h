@@ -25,6 +25,10 @@ struct dig_whitened_digs_group {
     double about;                              // sum of squares of the digs' y about the mean
     double log_det;                            // of one dig's covariance relative to amplitude
     double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
+    // What other approaches add to the mean, which was taken off: units of the table; and as it was
+    // dug in few beds, variance of the mean.
+    double added[DIG_FEATURES];
+    double added_noise;
 };
 
 struct dig_whitened_digs_dig {

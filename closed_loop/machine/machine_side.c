@@ -46,8 +46,9 @@ enum dig_status dig_machine_side_create(const struct dig_machine *const   machin
             dig_machine_side_destroy(made);
             return status;
         }
-        made->used[d]           = measured[d].use != DIG_USE_HOLDOUT;
-        measured[d].depth_share = 1.0;
+        made->used[d]               = measured[d].use != DIG_USE_HOLDOUT;
+        measured[d].made.attack_rad = made->dig[d].track.turn_m / set->tooth_m;
+        measured[d].depth_share     = 1.0;
     }
     *side = made;
     return DIG_OK;

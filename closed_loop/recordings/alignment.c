@@ -74,48 +74,50 @@ struct dig_alignment_place dig_alignment_place(const size_t rows, const double p
     return place;
 }
 
-double dig_alignment_distance(const struct dig_recording *const recording, const double progress[],
-                              const struct dig_trajectory *const trajectory, const double tooth_m,
-                              const double from, const double to)
+void dig_alignment_compare(const struct dig_recording *const recording, const double progress[],
+                           const struct dig_alignment_target *const target,
+                           struct dig_alignment_part *const         part)
 {
     enum { POINTS = 64 };
-    const double               first = fmax(from, 0.0);
-    const double               last  = fmin(to, 1.0);
-    double                     x_m[POINTS];
-    double                     z_m[POINTS];
-    double                     mean_x_m = 0.0;
-    double                     mean_z_m = 0.0;
-    double                     turn2_m2 = 0.0;
-    struct dig_alignment_place at       = { .row = 0 };
+    const double               first = fmax(part->from, 0.0);
+    const double               last  = fmin(part->to, 1.0);
+    struct dig_pose            off[POINTS];
+    struct dig_pose            mean = { 0.0, 0.0, 0.0 };
+    struct dig_alignment_place at   = { .row = 0 };
     for (int k = 0; k < POINTS; k++) {
         const double along = first + (last - first) * (double)k / (POINTS - 1);
-        at = dig_alignment_place(recording->rows, progress, (along - from) / (to - from), at.row);
+        at                 = dig_alignment_place(recording->rows, progress,
+                                                 (along - part->from) / (part->to - part->from), at.row);
 
         const struct dig_force_row *const a = &recording->row[at.row];
         const struct dig_force_row *const b = a + 1;
         const double                      f = at.fraction;
         const double                      theta_rad =
             (a->theta_deg + f * (b->theta_deg - a->theta_deg)) * DIG_RAD_PER_DEG;
-        const struct dig_pose pose =
-            dig_trajectory_pose(trajectory, dig_trajectory_time_s(trajectory, tooth_m, along));
-        x_m[k] = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m) - pose.x_m;
-        z_m[k] = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m) - pose.z_m;
-        mean_x_m += x_m[k] / POINTS;
-        mean_z_m += z_m[k] / POINTS;
-        turn2_m2 += pow(tooth_m * (theta_rad - pose.theta_rad), 2.0);
+        const struct dig_pose pose = dig_trajectory_pose(
+            target->trajectory, dig_trajectory_time_s(target->trajectory, target->tooth_m, along));
+        off[k].x_m       = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m) - pose.x_m;
+        off[k].z_m       = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m) - pose.z_m;
+        off[k].theta_rad = theta_rad - pose.theta_rad;
+        mean.x_m += off[k].x_m / POINTS;
+        mean.z_m += off[k].z_m / POINTS;
+        mean.theta_rad += off[k].theta_rad / POINTS;
     }
-    double sum_m2 = turn2_m2;
+    mean.theta_rad = fmin(fmax(mean.theta_rad, target->least_rad), target->most_rad);
+    double sum_m2  = 0.0;
     for (int k = 0; k < POINTS; k++) {
-        sum_m2 += pow(x_m[k] - mean_x_m, 2.0) + pow(z_m[k] - mean_z_m, 2.0);
+        sum_m2 += pow(target->tooth_m * (off[k].theta_rad - mean.theta_rad), 2.0) +
+                  pow(off[k].x_m - mean.x_m, 2.0) + pow(off[k].z_m - mean.z_m, 2.0);
     }
-    return sqrt(sum_m2 / POINTS) / tooth_m;
+    part->off        = sqrt(sum_m2 / POINTS) / target->tooth_m;
+    part->turned_rad = mean.theta_rad;
 }
 
 // The end of the part, from or to, where it lies nearest, the other as it is: first coarsely all
 // over, then ever finer about the best.
 static void move_end(const struct dig_recording *const recording, const double progress[],
-                     const struct dig_trajectory *const trajectory, const double tooth_m,
-                     const bool is_from, struct dig_alignment_part *const part)
+                     const struct dig_alignment_target *const target, const bool is_from,
+                     struct dig_alignment_part *const best)
 {
     enum { STEPS = 40, ROUNDS = 4 };
     const double whole = is_from ? 0.0 : 1.0;
@@ -123,38 +125,32 @@ static void move_end(const struct dig_recording *const recording, const double p
     double       high  = whole + most_missing;
     for (int round = 0; round < ROUNDS; round++) {
         const double step = (high - low) / STEPS;
-        double       best = is_from ? part->from : part->to;
         for (int k = 0; k <= STEPS; k++) {
-            const double at = low + step * k;
-            const double off =
-                dig_alignment_distance(recording, progress, trajectory, tooth_m,
-                                       is_from ? at : part->from, is_from ? part->to : at);
-            if (off < part->off) {
-                part->off = off;
-                best      = at;
-            }
+            struct dig_alignment_part tried      = *best;
+            *(is_from ? &tried.from : &tried.to) = low + step * k;
+            dig_alignment_compare(recording, progress, target, &tried);
+            *best = tried.off < best->off ? tried : *best;
         }
-        *(is_from ? &part->from : &part->to) = best;
-        low  = fmax(best - step, is_from ? 0.0 : 1.0 - most_missing);
-        high = fmin(best + step, is_from ? most_missing : 1.0);
+        const double at = is_from ? best->from : best->to;
+        low             = fmax(at - step, is_from ? 0.0 : 1.0 - most_missing);
+        high            = fmin(at + step, is_from ? most_missing : 1.0);
     }
 }
 
-struct dig_alignment_part dig_alignment_align(const struct dig_recording *const  recording,
-                                              const double                       progress[],
-                                              const struct dig_trajectory *const trajectory,
-                                              const double                       tooth_m)
+struct dig_alignment_part dig_alignment_align(const struct dig_recording *const        recording,
+                                              const double                             progress[],
+                                              const struct dig_alignment_target *const target)
 {
-    assert(recording != NULL && progress != NULL && trajectory != NULL);
+    assert(recording != NULL && progress != NULL && target != NULL);
     struct dig_alignment_part whole = { .to = 1.0 };
-    whole.off = dig_alignment_distance(recording, progress, trajectory, tooth_m, 0.0, 1.0);
+    dig_alignment_compare(recording, progress, target, &whole);
     if (whole.off <= whole_off) {
         return whole;
     }
     struct dig_alignment_part part = whole;
     for (int round = 0; round < 3; round++) {
-        move_end(recording, progress, trajectory, tooth_m, false, &part);
-        move_end(recording, progress, trajectory, tooth_m, true, &part);
+        move_end(recording, progress, target, false, &part);
+        move_end(recording, progress, target, true, &part);
     }
     return part.off < 0.5 * whole.off ? part : whole;
 }

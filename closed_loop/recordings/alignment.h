@@ -9,11 +9,20 @@
 
 #include <stddef.h>
 
+/// What a recording is aligned with: a trajectory, against which the bucket may be turned by so
+/// much all along.
+struct dig_alignment_target {
+    const struct dig_trajectory *trajectory;
+    double                       tooth_m;
+    double                       least_rad, most_rad; // 0 and 0: not at all
+};
+
 /// Which part of a trajectory's path, 0 … 1, a recording tells of, and how far it lies off it.
 /// Below 0 and above 1: it goes on beyond the trajectory's ends.
 struct dig_alignment_part {
     double from, to;
     double off; // rms, in bucket lengths
+    double turned_rad;
 };
 
 /// Writes the path travelled up to each row as a fraction of the recording's whole; returns that
@@ -32,17 +41,17 @@ struct dig_alignment_place {
 struct dig_alignment_place dig_alignment_place(size_t rows, const double progress[], double at,
                                                size_t from);
 
-/// The rms distance between recorded and prescribed poses at equal progress of what both have, the
-/// mean offset of the pin taken away (the ground may lie anywhere), in bucket lengths.
-double dig_alignment_distance(const struct dig_recording *recording, const double progress[],
-                              const struct dig_trajectory *trajectory, double tooth_m, double from,
-                              double to);
+/// The rms distance between recorded and prescribed poses at equal progress of what both have,
+/// without the mean offset of the pin (the ground may lie anywhere) and the mean turn within the
+/// target's range: fills off and turned_rad of a part from its from and to.
+void dig_alignment_compare(const struct dig_recording *recording, const double progress[],
+                           const struct dig_alignment_target *target,
+                           struct dig_alignment_part         *part);
 
 /// Finds which part of the trajectory's path was recorded, at least six tenths of it, or what of
 /// the recording lies beyond it: all of it and no more, unless that comes twice as near.
-struct dig_alignment_part dig_alignment_align(const struct dig_recording  *recording,
-                                              const double                 progress[],
-                                              const struct dig_trajectory *trajectory,
-                                              double                       tooth_m);
+struct dig_alignment_part dig_alignment_align(const struct dig_recording        *recording,
+                                              const double                       progress[],
+                                              const struct dig_alignment_target *target);
 
 #endif // DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H

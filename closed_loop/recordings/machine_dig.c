@@ -1,5 +1,6 @@
 #include "closed_loop/recordings/machine_dig.h"
 
+#include "estimator/approach/approach_route.h"
 #include "estimator/track/recorded_dig.h"
 #include "estimator/wrench/cylinder.h"
 
@@ -17,7 +18,7 @@ static const double clear_s = 0.25;
 static const double dumped_s = 0.6;
 
 // In tooth lengths: spacing of the vertices, how far a path may lie off its trajectory (the
-// estimator's path_limit_m on the rig), and how far off a start may be turned.
+// estimator's path_limit_m on the rig), and how far off a start may be turned beyond its range.
 static const double spacing_share = 0.025;
 static const double limit_share   = 0.09;
 static const double turned_share  = 0.12;
@@ -72,8 +73,15 @@ static void lay_out(const struct dig_machine *const machine, const struct dig_cu
     }
 }
 
-// How far the path from a vertex on lies off the route begun there: rms, in which what is missing
-// of the route counts whole. end: the vertex at which the route is done.
+// How far the bucket is turned at a point against the route's start, within the route's range.
+static double turn_at(const struct dig_route *const route, const struct dig_path_point *const at)
+{
+    return fmin(fmax(at->turn_m - route->corner[0].turn_m, route->turn_least_m),
+                route->turn_most_m);
+}
+
+// How far the path from a vertex on lies off the route begun there, turned as there: rms, in which
+// what is missing of the route counts whole. end: the vertex at which the route is done.
 static double off_route_m(const struct dig_route *const route, const struct vertices *const v,
                           const size_t start, const double tooth_m, const double enough_m,
                           size_t *const end)
@@ -84,12 +92,14 @@ static double off_route_m(const struct dig_route *const route, const struct vert
     const double                dx_m    = from.x_m - route->corner[0].x_m;
     const double                dz_m    = from.z_m - route->corner[0].z_m;
 
-    double sum_m2 = 0.0;
-    double last   = 0.0;
-    size_t i      = start;
+    const struct dig_track begun  = { .turn_m = turn_at(route, &from) };
+    double                 sum_m2 = 0.0;
+    double                 last   = 0.0;
+    size_t                 i      = start;
     for (; i < v->count && i < start + most && last < 0.99; i++) {
+        const struct dig_path_point at = dig_track_turned(&begun, &v->point[i]);
         const struct dig_projection place =
-            dig_route_project(route, dx_m, dz_m, &v->point[i], last - 0.02, fmin(last + 0.1, 1.0));
+            dig_route_project(route, dx_m, dz_m, &at, last - 0.02, fmin(last + 0.1, 1.0));
         sum_m2 += place.distance_m * place.distance_m;
         last = fmax(last, place.progress);
         if (sum_m2 > (double)most * enough_m * enough_m) {
@@ -115,9 +125,10 @@ static struct found search(const struct dig_curve_set *const set, const struct v
         if (asked >= 0 && (size_t)asked != t) {
             continue;
         }
-        const struct dig_route route = dig_route_make(&set->trajectory[t], set->tooth_m);
+        const struct dig_route route = dig_approach_route(set, t);
         for (size_t s = 0; s + 2 < v->count; s++) {
-            if (fabs(v->point[s].turn_m - route.corner[0].turn_m) > turned_share * set->tooth_m) {
+            const double turn_m = v->point[s].turn_m - route.corner[0].turn_m;
+            if (fabs(turn_m - turn_at(&route, &v->point[s])) > turned_share * set->tooth_m) {
                 continue;
             }
             size_t       end   = s;
@@ -196,7 +207,8 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
     dig->contact      = from;
     dig->end          = to;
     for (size_t i = from; i < dig->samples; i++) {
-        const struct dig_path_point at    = point_of(machine, set, dig, i);
+        const struct dig_path_point point = point_of(machine, set, dig, i);
+        const struct dig_path_point at    = dig_track_turned(&dig->track, &point);
         const struct dig_projection place = dig_route_project(
             route, dig->track.dx_m, dig->track.dz_m, &at, last - 0.05, fmin(last + 0.1, 1.0));
         if (place.distance_m > 2.0 * limit_share * set->tooth_m) {
@@ -229,7 +241,7 @@ static enum dig_status place(const struct dig_machine *const   machine,
     if (found.trajectory < 0) {
         return dig_error_set(error, DIG_ENOMATCH, "no dig along %s found in it", along);
     }
-    const struct dig_route route = dig_route_make(&set->trajectory[found.trajectory], set->tooth_m);
+    const struct dig_route route = dig_approach_route(set, (size_t)found.trajectory);
     dig->track                   = fit_track(&route, v, &found, set->tooth_m);
     dig->trajectory              = found.trajectory;
     if (!(dig->track.rms_m <= limit_m) || !(found.off_m <= 3.0 * limit_m)) {

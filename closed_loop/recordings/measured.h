@@ -4,6 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H
 #define DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 
 #include <stdbool.h>
@@ -14,15 +15,23 @@ enum dig_use { DIG_USE_IDENTIFY, DIG_USE_FIT, DIG_USE_HOLDOUT };
 
 #define DIG_MEASURED_MAX 64
 
+/// What a dig at another approach adds to the plain one, as the table has it.
+struct dig_added {
+    double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double noise; // as it was dug in few beds, in variances of one dig
+};
+
 struct dig_measured {
     char         name[64]; // the recording, for people
     size_t       order;    // place in the campaign, 0 …: digs follow each other in this order
     int          trajectory;
     enum dig_use use;
-    unsigned     pass;  // how often the place was dug, counted from 1
-    double       pace;  // duration of the table's trajectory / of this dig, both at rig scale
-    double       depth; // over the table's, as its path tells; 0: as the table's, or not told
-    bool         depth_taken_off; // value is of the plain dig
+    unsigned     pass; // how often the place was dug, counted from 1
+    double       pace; // duration of the table's trajectory / of this dig, both at rig scale
+
+    struct dig_approach made;      // as its path tells; zeroed: as the table's, or not told
+    struct dig_approach taken_off; // what that adds is no longer in value; zeroed: nothing
+    struct dig_added    added;     // that
     // How far its ground may lie elsewhere, of all depths of the table: 0: it is known; 1: anywhere
     // among them, as a machine's, or of a force recording whose path is another.
     double depth_share;

@@ -3,6 +3,7 @@
 #include "closed_loop/recordings/alignment.h"
 #include "core/units.h"
 #include "estimator/approach/approach_fit.h"
+#include "estimator/approach/approach_route.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/approaches.h"
 
@@ -166,7 +167,12 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
         if (as_dug && dig_approach_varies(set, t)) {
             part.off = fit_distance(recording, c, set, t, &made, &approach);
         } else {
-            part = dig_alignment_align(recording, c->progress, &set->trajectory[t], set->tooth_m);
+            const struct dig_route            route  = dig_approach_route(set, t);
+            const struct dig_alignment_target target = { &set->trajectory[t], set->tooth_m,
+                                                         route.turn_least_m / set->tooth_m,
+                                                         route.turn_most_m / set->tooth_m };
+            part            = dig_alignment_align(recording, c->progress, &target);
+            made.attack_rad = part.turned_rad;
         }
         if (part.off < best_part->off) {
             best               = (int)t;

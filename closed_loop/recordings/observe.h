@@ -19,7 +19,7 @@
 struct dig_observed {
     int                 trajectory;
     double              off_path_m;
-    struct dig_approach made; // of dig_observe_as_dug(), as the way tells it; else the plain one
+    struct dig_approach made; // as the way tells it; the depth only of dig_observe_as_dug(), else 1
     struct dig_approach approach; // the nearest to that the table holds
     double              pace;     // duration of the table's trajectory / of this dig
     double              first,
@@ -29,7 +29,8 @@ struct dig_observed {
                 [DIG_CURVE_POINTS]; // smoothed; 0 where not measured, and outside that range
 };
 
-/// As dig_observe_recording(), all channels. A force that a row lacks is not measured at all;
+/// As dig_observe_recording(), all channels. The bucket may be turned against the trajectory as far
+/// as the table was dug so. A force that a row lacks is not measured at all;
 /// DIG_EINVAL when the moment is.
 DIG_MUST_CHECK enum dig_status dig_observe_dig(const struct dig_curve_set *set,
                                                const struct dig_recording *recording,

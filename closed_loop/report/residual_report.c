@@ -1,13 +1,25 @@
 #include "closed_loop/report/residual_report.h"
 
 #include "closed_loop/report/json.h"
+#include "core/units.h"
 
 #include <assert.h>
+#include <math.h>
 
 const char *dig_residuals_use_name(const enum dig_use use)
 {
     static const char *const name[] = { "identify", "fit", "holdout" };
     return name[use];
+}
+
+void dig_residuals_approach_text(const struct dig_approach *const taken_off,
+                                 char                             text[DIG_APPROACH_TEXT_SIZE])
+{
+    const struct dig_approach rounded = {
+        0.01 * round(100.0 * dig_approach_normalized(taken_off).depth),
+        0.1 * DIG_RAD_PER_DEG * round(10.0 * taken_off->attack_rad / DIG_RAD_PER_DEG)
+    };
+    dig_approach_text(&rounded, text);
 }
 
 static bool is_known(const struct dig_residuals_dig *const dig, const size_t channel)
@@ -32,7 +44,8 @@ static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
     dig_json_text(to, ", ", "trajectory", dig->trajectory);
     (void)fprintf(to, ", \"role\": \"%s\", \"pass\": %u", dig_residuals_use_name(dig->use),
                   dig->pass);
-    dig_json_member(to, ", ", "depth", dig->depth);
+    dig_json_member(to, ", ", "depth", dig->taken_off.depth);
+    dig_json_member(to, ", ", "attack_deg", dig->taken_off.attack_rad / DIG_RAD_PER_DEG);
     dig_json_member(to, ", \"air\": {", "sigmas", dig->air_sigmas);
     (void)fputs("}", to);
     for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {

@@ -12,6 +12,11 @@
 /// "identify", "fit", "holdout".
 const char *dig_residuals_use_name(enum dig_use use);
 
+/// "depth 1.15, attack -5 deg" behind a ", ", to a hundredth and a tenth of a degree; "" where that
+/// is the plain one.
+void dig_residuals_approach_text(const struct dig_approach *taken_off,
+                                 char                       text[DIG_APPROACH_TEXT_SIZE]);
+
 /// The members "residuals", "residual_against" and "whiteness" of the object, each with a comma and
 /// a line feed. NULL: empty lists and null.
 void dig_residuals_json(const struct dig_residuals *residuals, FILE *to);

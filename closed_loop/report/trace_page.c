@@ -201,18 +201,16 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
 
     struct dig_picture p;
     char               title[224];
-    char               depth[32] = "";
-    const size_t       n         = DIG_CURVE_POINTS;
-    const bool         scaled    = lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
-    const double       power     = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
-    const double       unit      = scaled ? 1e-3 * pow(lambda, power) : 1.0;
+    char               way[DIG_APPROACH_TEXT_SIZE];
+    const size_t       n      = DIG_CURVE_POINTS;
+    const bool         scaled = lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
+    const double       power  = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
+    const double       unit   = scaled ? 1e-3 * pow(lambda, power) : 1.0;
     fill_picture(curves, dig, channel, unit, &p);
-    if (dig->depth_taken_off) {
-        (void)snprintf(depth, sizeof depth, ", depth %.2f taken off", dig->depth);
-    }
-    (void)snprintf(title, sizeof title, "%s: %s, %s%s%s%s", dig->name, trajectory,
-                   dig_residuals_use_name(dig->use), dig->pass > 1 ? ", dug before" : "", depth,
-                   of[channel]);
+    dig_residuals_approach_text(&dig->taken_off, way);
+    (void)snprintf(title, sizeof title, "%s: %s, %s%s%s%s%s", dig->name, trajectory,
+                   dig_residuals_use_name(dig->use), dig->pass > 1 ? ", dug before" : "", way,
+                   way[0] != '\0' ? " taken off" : "", of[channel]);
     // Where nothing was changed before is after, and is drawn once.
     const bool same =
         // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)

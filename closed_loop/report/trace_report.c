@@ -257,14 +257,16 @@ static void put_meanings(FILE *const to, const struct dig_trace *const trace)
     }
 }
 
-// Which digs were compared as if they had been as deep as the table's.
-static void put_depths(FILE *const to, const struct dig_trace *const trace)
+// Which digs were compared as if they had been dug as the table's.
+static void put_approaches(FILE *const to, const struct dig_trace *const trace)
 {
     for (size_t i = 0; trace->residuals != NULL && i < trace->residuals->digs; i++) {
         const struct dig_residuals_dig *const dig = &trace->residuals->dig[i];
-        if (fabs(dig->depth - 1.0) > 0.0) {
-            (void)fprintf(to, "  %s: dug at depth %.2f, as its path tells; taken off\n", dig->name,
-                          dig->depth);
+        char                                  way[DIG_APPROACH_TEXT_SIZE];
+        dig_residuals_approach_text(&dig->taken_off, way);
+        if (way[0] != '\0') {
+            (void)fprintf(to, "  %s: dug at %s, as its path tells; taken off\n", dig->name,
+                          way + 2);
         }
     }
 }
@@ -298,7 +300,7 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
                   trace->gravel.value[DIG_AXIS_FRICTION], trace->gravel.value[DIG_AXIS_ROLLING],
                   trace->gravel.value[DIG_AXIS_DENSITY_kgpm3]);
     put_meanings(to, trace);
-    put_depths(to, trace);
+    put_approaches(to, trace);
     put_error_line(to, "before", &trace->before, trace->holdouts);
     put_error_line(to, "after ", &trace->after, trace->holdouts);
     (void)fprintf(to,

@@ -24,7 +24,7 @@ static void fill_dig(const struct dig_trace_work *const   w,
                    w->set->trajectory[dig->trajectory].name);
     to->use        = dig->use;
     to->pass       = dig->pass;
-    to->depth      = dig->depth_taken_off ? dig->depth : 1.0;
+    to->taken_off  = dig_approach_normalized(&dig->taken_off);
     to->air_sigmas = w->machine != NULL ? w->air->residual_air_of[i] : (double)NAN;
     dig_residual_of(w->set, dig, curves, false, to->before);
     dig_residual_of(w->set, dig, curves, true, to->after);

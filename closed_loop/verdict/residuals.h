@@ -29,7 +29,8 @@ struct dig_residuals_dig {
     char         trajectory[DIG_NAME_SIZE];
     enum dig_use use;
     unsigned     pass;
-    double       depth; // what it adds has been taken off; 1: nothing has
+    // What that adds has been taken off; the plain one: nothing has.
+    struct dig_approach taken_off;
     // In free air, rms over the rms expected, machine as its file says; NaN: none, or a holdout.
     double              air_sigmas;
     struct dig_residual before[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];

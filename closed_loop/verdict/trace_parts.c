@@ -141,16 +141,39 @@ void dig_trace_fill_residuals(const struct dig_trace_work *const w,
     }
 }
 
-// v of a trajectory at a fitted hypothesis; of one that no dig was fitted along, the surface's.
-static double noise_along(const struct dig_trace_work *const w,
-                          const struct dig_fitted *const fitted, const size_t trajectory)
+// Of a group's v, what other approaches bring in.
+static double noise_of_approaches(const struct dig_whitened_digs_group *const group)
 {
+    struct dig_common_error only = { .even = group->added_noise };
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        only.size[0][f] = DIG_COMMON_ERROR_OF_APPROACHES * group->added[f];
+    }
+    dig_common_error_build(group, &only);
+    return only.noise;
+}
+
+// v of a dig at a fitted hypothesis: what its trajectory's digs share, but of approaches its own.
+// Of a trajectory that no dig was fitted along the surface's.
+static double noise_of(const struct dig_trace_work *const w, const struct dig_fitted *const fitted,
+                       const struct dig_measured *const dig)
+{
+    const size_t trajectory = (size_t)dig->trajectory;
     for (size_t g = 0; g < w->batch->groups; g++) {
         if (w->batch->group[g].trajectory == trajectory) {
-            return fitted->noise[g];
+            return fitted->noise[g] - noise_of_approaches(&w->batch->group[g]) + dig->added.noise;
         }
     }
-    return dig_response_surface_noise(w->surface, trajectory, fitted->number);
+    return dig_response_surface_noise(w->surface, trajectory, fitted->number) + dig->added.noise;
+}
+
+static void add_approach(const struct dig_measured *const dig,
+                         double                           sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd[c][k] = hypot(sd[c][k], DIG_COMMON_ERROR_OF_APPROACHES * dig->added.value[c][k]);
+        }
+    }
 }
 
 static void add_unlisted(const struct dig_model_unlisted *const unlisted, const size_t trajectory,
@@ -182,11 +205,11 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
             continue;
         }
         dig_hypothesis_curve(w->soil, &before->hypothesis, before->number, dig, c->before);
-        dig_judge_sd(w->surface, w->scatter, trajectory, before->number,
-                     noise_along(w, before, trajectory), c->before_sd);
+        dig_judge_sd(w->surface, w->scatter, trajectory, before->number, noise_of(w, before, dig),
+                     c->before_sd);
         dig_hypothesis_curve(w->soil, &after->hypothesis, after->number, dig, c->after);
-        dig_judge_sd(w->surface, w->scatter, trajectory, after->number,
-                     noise_along(w, after, trajectory), c->after_sd);
+        dig_judge_sd(w->surface, w->scatter, trajectory, after->number, noise_of(w, after, dig),
+                     c->after_sd);
         if (unlisted != NULL) {
             add_unlisted(unlisted, trajectory, c->after);
         }
@@ -194,6 +217,8 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
         dig_response_surface_curve(w->surface, trajectory, after->number, plain);
         dig_judge_sd_of_dug((const double(*)[DIG_CURVE_POINTS])plain,
                             (const double(*)[DIG_CURVE_POINTS])c->after, c->after_sd);
+        add_approach(dig, c->before_sd);
+        add_approach(dig, c->after_sd);
         for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 c->after[channel][k] += dig->machine[channel][k];

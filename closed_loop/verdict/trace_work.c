@@ -1,6 +1,6 @@
 #include "closed_loop/verdict/trace_work.h"
 
-#include "closed_loop/model/depth_change.h"
+#include "closed_loop/model/approach_change.h"
 #include "estimator/approach/approach_slots.h"
 
 #include <math.h>
@@ -23,45 +23,70 @@ static double squares_off(const struct dig_trace_work *const w,
     return sum;
 }
 
-// Takes off what another depth, where a dig's path tells it, adds to the plain dig of that gravel.
-// A path that is longer as it begins in the air is told by what it resists: as the plain dig does.
-static enum dig_status take_off_depth(const struct dig_trace_work *const w, const double place[],
-                                      struct dig_measured *const dig)
+// The plain dig of that gravel and what the approach adds to it: how far off the dig is. added:
+// that.
+static enum dig_status compare(const struct dig_trace_work *const w, const double place[],
+                               const struct dig_measured *const dig,
+                               const struct dig_approach *const approach,
+                               struct dig_added *const added, double *const squares)
 {
     const size_t            t      = (size_t)dig->trajectory;
     const struct dig_gravel gravel = dig_response_surface_gravel(w->surface, place);
-    double                  added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double                  plain[DIG_FEATURES];
-    double                  deeper[DIG_FEATURES];
+    const enum dig_status   status = dig_approach_added(w->set, t, &gravel, approach, added);
+    double                  feature[DIG_FEATURES];
+    double                  more[DIG_FEATURES];
     double                  amplitude[DIG_FORCE_CHANNELS];
-    const enum dig_status   status = dig_depth_added(w->set, t, &gravel, dig->depth, added);
-    if (status != DIG_OK || !w->surface->known[t]) {
+    if (status != DIG_OK) {
         return status;
     }
-    dig_response_surface_features(w->surface, t, place, plain, amplitude);
-    dig_features_of((const double(*)[DIG_CURVE_POINTS])added, deeper);
+    dig_response_surface_features(w->surface, t, place, feature, amplitude);
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])added->value, more);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        deeper[f] += plain[f];
+        feature[f] += more[f];
     }
-    const bool is_deeper =
-        squares_off(w, dig, deeper, amplitude) < squares_off(w, dig, plain, amplitude);
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            dig->value[c][k] -= is_deeper && dig->measured[c] ? added[c][k] : 0.0;
-        }
-    }
-    dig->depth           = is_deeper ? dig->depth : 0.0;
-    dig->depth_taken_off = is_deeper;
+    *squares = squares_off(w, dig, feature, amplitude);
     return DIG_OK;
 }
 
-static enum dig_status take_off_depths(const struct dig_trace_work *const w, const double place[])
+// Takes off what another approach, where a dig's path tells it, adds to the plain dig of that
+// gravel. A path that is longer as it begins in the air is told by what it resists: as it would at
+// depth 1.
+static enum dig_status take_off_approach(const struct dig_trace_work *const w, const double place[],
+                                         struct dig_measured *const dig)
+{
+    enum { MADE, LEVEL, WAYS };
+    const struct dig_approach way[WAYS] = {
+        [MADE] = dig_approach_normalized(&dig->made), [LEVEL] = { 1.0, dig->made.attack_rad }
+    };
+    struct dig_added added[WAYS];
+    double           squares[WAYS];
+    for (int i = 0; i < WAYS; i++) {
+        const enum dig_status status = compare(w, place, dig, &way[i], &added[i], &squares[i]);
+        if (status != DIG_OK) {
+            return status;
+        }
+    }
+    const int chosen = squares[MADE] < squares[LEVEL] ? MADE : LEVEL;
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            dig->value[c][k] -= dig->measured[c] ? added[chosen].value[c][k] : 0.0;
+        }
+    }
+    dig->made      = way[chosen];
+    dig->taken_off = way[chosen];
+    dig->added     = added[chosen];
+    return DIG_OK;
+}
+
+static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
+                                           const double                       place[])
 {
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         struct dig_measured *const dig = &w->measured[i];
-        if (dig->depth > 0.0 && !dig->depth_taken_off) {
-            status = take_off_depth(w, place, dig);
+        if (w->surface->known[dig->trajectory] && dig_approach_is_plain(&dig->taken_off) &&
+            !dig_approach_is_plain(&dig->made)) {
+            status = take_off_approach(w, place, dig);
         }
     }
     return status;
@@ -128,7 +153,7 @@ enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
     enum dig_status status = make_batch(w, NULL);
     if (status == DIG_OK) {
         fit_plain(w, plain);
-        status = take_off_depths(w, plain->number);
+        status = take_off_approaches(w, plain->number);
     }
     if (status == DIG_OK) {
         status = open_depths(w, plain->number);

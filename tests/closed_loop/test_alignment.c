@@ -20,6 +20,8 @@ static const struct dig_trajectory dug = { "dug",
                                              { "drag", 1.0, 0.0463, 0.0, 0.0 },
                                              { "turn", 1.0, 0.0, 0.0, 0.3 } } };
 
+static const struct dig_alignment_target still = { &dug, TOOTH_m, 0.0, 0.0 };
+
 static double way_m(const double t_s)
 {
     const double drag_s = fmin(fmax(t_s - 0.6, 0.0), 1.0);
@@ -80,7 +82,7 @@ static void expect_part(const double from_s, const double to_s, const struct sca
     struct dig_recording r        = drive(from_s, to_s, 200.0, noise);
     double *const        progress = calloc(r.rows, sizeof *progress);
     (void)dig_alignment_progress(&r, TOOTH_m, progress);
-    const struct dig_alignment_part part = dig_alignment_align(&r, progress, &dug, TOOTH_m);
+    const struct dig_alignment_part part = dig_alignment_align(&r, progress, &still);
     assert_close(part.from, way_m(from_s) / way_m(2.6), within);
     assert_close(part.to, way_m(to_s) / way_m(2.6), within);
     assert_true(part.off < 0.004);
@@ -109,11 +111,53 @@ static void another_path_is_not_bent_to_fit(void **state)
     }
     double *const progress = calloc(r.rows, sizeof *progress);
     (void)dig_alignment_progress(&r, TOOTH_m, progress);
-    const struct dig_alignment_part part = dig_alignment_align(&r, progress, &dug, TOOTH_m);
+    const struct dig_alignment_part part  = dig_alignment_align(&r, progress, &still);
+    struct dig_alignment_part       whole = { .to = 1.0 };
+    dig_alignment_compare(&r, progress, &still, &whole);
     assert_close(part.from, 0.0, 0.0);
     assert_close(part.to, 1.0, 0.0);
-    assert_close(part.off, dig_alignment_distance(&r, progress, &dug, TOOTH_m, 0.0, 1.0), 1e-12);
+    assert_close(part.off, whole.off, 1e-12);
     assert_true(part.off > 0.01);
+    free(progress);
+    dig_recording_finish(&r);
+}
+
+// Of a turn beyond what the target allows the rest is distance.
+static void a_turned_bucket_is_told_within_the_range(void **state)
+{
+    (void)state;
+    static const struct dig_alignment_target target   = { &dug, TOOTH_m, -0.1, 0.1 };
+    struct dig_recording                     r        = drive(0.0, 2.6, 200.0, &clean);
+    double *const                            progress = calloc(r.rows, sizeof *progress);
+    (void)dig_alignment_progress(&r, TOOTH_m, progress);
+    for (int turns = 1; turns <= 3; turns++) { // each by .06 rad
+        for (size_t i = 0; i < r.rows; i++) {
+            r.row[i].theta_deg += 0.06 / DIG_RAD_PER_DEG;
+        }
+        const struct dig_alignment_part part = dig_alignment_align(&r, progress, &target);
+        assert_close(part.turned_rad, fmin(0.06 * turns, 0.1), 0.001);
+        assert_close(part.off, fmax(0.06 * turns - 0.1, 0.0), 0.002);
+        assert_close(part.to - part.from, 1.0, 0.0);
+    }
+    free(progress);
+    dig_recording_finish(&r);
+}
+
+// What is missing is told beside a turn, too.
+static void a_part_of_a_turned_dig_is_told(void **state)
+{
+    (void)state;
+    static const struct dig_alignment_target target   = { &dug, TOOTH_m, -0.2, 0.2 };
+    struct dig_recording                     r        = drive(0.15, 2.3, 200.0, &clean);
+    double *const                            progress = calloc(r.rows, sizeof *progress);
+    (void)dig_alignment_progress(&r, TOOTH_m, progress);
+    for (size_t i = 0; i < r.rows; i++) {
+        r.row[i].theta_deg -= 0.1 / DIG_RAD_PER_DEG;
+    }
+    const struct dig_alignment_part part = dig_alignment_align(&r, progress, &target);
+    assert_close(part.from, way_m(0.15) / way_m(2.6), 0.01);
+    assert_close(part.to, way_m(2.3) / way_m(2.6), 0.01);
+    assert_close(part.turned_rad, -0.1, 0.005);
     free(progress);
     dig_recording_finish(&r);
 }
@@ -124,6 +168,8 @@ int main(void)
         cmocka_unit_test(noise_of_the_path_makes_no_way),
         cmocka_unit_test(what_a_recording_lacks_is_told_by_the_poses),
         cmocka_unit_test(another_path_is_not_bent_to_fit),
+        cmocka_unit_test(a_turned_bucket_is_told_within_the_range),
+        cmocka_unit_test(a_part_of_a_turned_dig_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -124,10 +124,12 @@ static void depth_and_attack_of_a_dig_are_told_where_the_table_has_them(void **s
     assert_close(o.approach.depth, 1.1, 1e-3);
     assert_close(o.approach.attack_rad, 0.03, 1e-4);
     assert_true(o.off_path_m < 1e-4);
-    // Who wants plain digs alone sees one that is off by so much.
+    // Over the plain path the attack is told all the same; the depth counts as distance.
     assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
     assert_true(dig_approach_is_plain(&o.approach));
-    assert_true(o.off_path_m > 2.7e-3);
+    assert_close(o.made.attack_rad, 0.03, 1e-3);
+    assert_close(o.made.depth, 1.0, 0.0);
+    assert_true(o.off_path_m < 1e-3);
     dig_recording_finish(&r);
 
     // Of the other trajectory the table has nothing but the plain dig.

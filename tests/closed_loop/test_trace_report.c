@@ -72,7 +72,7 @@ static void fill_residuals(struct dig_residuals *const r)
         dig->air_sigmas = i == 0 ? 2.5 : (double)NAN;
         dig->use        = i == 0 ? DIG_USE_FIT : DIG_USE_HOLDOUT;
         dig->pass       = (unsigned)i + 1;
-        dig->depth      = i == 1 ? 1.25 : 1.0;
+        dig->taken_off  = i == 1 ? (struct dig_approach){ 1.25, 0.1 } : dig_approach_plain();
         (void)snprintf(dig->name, sizeof dig->name, "dig <%zu>.csv", i + 1);
         (void)snprintf(dig->trajectory, sizeof dig->trajectory, "simpleA");
     }
@@ -241,7 +241,8 @@ static void json_holds_the_keys_of_the_contract(void **state)
     expect(text, "whiteness.without.p", "0.005");
     expect(text, "whiteness.with.expected", "9.25");
     assert_contains(text, "{\"file\": \"dig <2>.csv\", \"trajectory\": \"simpleA\", \"role\": "
-                          "\"holdout\", \"pass\": 2, \"depth\": 1.25, \"air\": {\"sigmas\": null}");
+                          "\"holdout\", \"pass\": 2, \"depth\": 1.25, \"attack_deg\": 5.72958, "
+                          "\"air\": {\"sigmas\": null}");
     assert_contains(text,
                     "\"fz_N\": {\"before\": {\"rms\": 1.5, \"relative\": 0.375, \"sigmas\": 7.5}, "
                     "\"after\": {\"rms\": 0.375,");
@@ -324,7 +325,8 @@ static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
     assert_contains(text, "coulomb_N 812   90 %: 760 to 861");
     assert_contains(text, "cannot tell apart: cohesion, ground_slope");
     assert_contains(text, "error after  0.140   90 %: 0.120 to 0.170");
-    assert_contains(text, "dig <2>.csv: dug at depth 1.25, as its path tells; taken off");
+    assert_contains(text,
+                    "dig <2>.csv: dug at depth 1.25, attack 5.7 deg, as its path tells; taken off");
     assert_null(strstr(text, "dig <1>.csv: dug at"));
     assert_contains(text, "error before unknown: no holdout dig");
     assert_contains(text, "error after  0.140   one dig: no interval");

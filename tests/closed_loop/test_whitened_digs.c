@@ -1,5 +1,7 @@
 #include "closed_loop/fit/whitened_digs.h"
 
+#include "closed_loop/fit/hypothesis.h"
+
 #include "tests/closed_loop/world_fixture.h"
 
 #include <stdlib.h>
@@ -73,6 +75,43 @@ static void what_the_machine_adds_is_taken_off(void **state)
     }
     free(off);
     free(plain);
+    free(measured);
+}
+
+// Two digs of thirty were rid of what an approach adds, which two beds know: the mean is off by a
+// fifteenth of what that is off by, whatever the digs' number.
+static void what_approaches_add_is_shared(void **state)
+{
+    (void)state;
+    static const struct dig_hypothesis plain                         = { .effects = 0 };
+    const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_measured               *measured = calloc(DIGS, sizeof *measured);
+    enum dig_status                    status;
+    struct dig_fitted                  without;
+    struct dig_fitted                  with;
+    struct dig_whitened_digs          *batch = batch_of(measured, &status);
+    dig_hypothesis_fit(batch, soil, &plain, start, DIG_FIT_BARE, &without);
+    assert_close(batch->group[0].added_noise, 0.0, 0.0);
+    for (size_t i = 0; i < 4; i += 2) {
+        measured[i].added.noise = 0.5;
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            measured[i].added.value[0][k] = 0.3;
+        }
+    }
+    bool take[DIGS];
+    memset(take, true, sizeof take);
+    double place[DIG_AXES];
+    dig_response_surface_place(world.surface, &gravel, place);
+    assert_int_equal(
+        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
+        DIG_OK);
+    assert_close(batch->group[0].added_noise, 0.5 / 225.0, 1e-12);
+    assert_close(batch->group[0].added[3], 0.3 / 15.0, 1e-12);
+    assert_close(batch->group[0].added[DIG_FEATURE_BINS], 0.0, 0.0);
+    dig_hypothesis_fit(batch, soil, &plain, start, DIG_FIT_BARE, &with);
+    assert_true(with.noise[0] > without.noise[0] + 1.5 * 0.5 / 225.0); // and the share of it
+    assert_close(with.noise[1], without.noise[1], 0.01 * without.noise[1]);
+    free(batch);
     free(measured);
 }
 
@@ -236,6 +275,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(digs_of_one_gravel_scatter_by_one),
         cmocka_unit_test(what_the_machine_adds_is_taken_off),
+        cmocka_unit_test(what_approaches_add_is_shared),
         cmocka_unit_test(digs_and_models_shrink_alike),
         cmocka_unit_test(what_smoothing_does_to_a_fast_dig_is_taken_off),
         cmocka_unit_test(only_what_all_digs_have_is_compared),

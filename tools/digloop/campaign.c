@@ -64,7 +64,7 @@ static void tell_depth(const struct dig_curve_set *const set,
     struct dig_observed as_dug;
     if (dig_observe_as_dug(set, recording, &as_dug, NULL) == DIG_OK &&
         as_dug.trajectory == m->trajectory && fabs(as_dug.made.depth - 1.0) > same) {
-        m->depth       = as_dug.made.depth;
+        m->made.depth  = as_dug.made.depth;
         m->depth_share = 1.0;
     }
 }
@@ -83,6 +83,7 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", r->file, why.text);
         } else {
+            m->made = o.made;
             tell_depth(set, &recording, m);
         }
     }

@@ -1,8 +1,9 @@
-#include "closed_loop/model/depth_change.h"
+#include "closed_loop/model/approach_change.h"
 
 #include "estimator/approach/approach_route.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/approached.h"
+#include "estimator/approach/approaches.h"
 #include "estimator/approach/interpolate.h"
 
 #include <assert.h>
@@ -125,12 +126,33 @@ enum dig_status dig_depth_change(const struct dig_curve_set *const set, const si
     return DIG_OK;
 }
 
-enum dig_status dig_depth_added(const struct dig_curve_set *const set, const size_t trajectory,
-                                const struct dig_gravel *const gravel, const double depth,
-                                double added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+// What the means of its few beds make the change uncertain by. Gravels that borrow it from several
+// are taken for no better.
+static double noise_of(const struct dig_curve_set *const set, const size_t trajectory,
+                       const struct dig_approach *const approach)
+{
+    for (size_t e = 0; e < set->entries; e++) {
+        struct dig_nodes nodes;
+        double           weight[DIG_NODES_MAX];
+        dig_nodes_of(set, e, trajectory, &nodes);
+        if (nodes.nodes > 1 && dig_approach_weigh(&nodes, approach, weight)) {
+            double noise = pow(1.0 - weight[0], 2.0) / nodes.packings[0];
+            for (size_t n = 1; n < nodes.nodes; n++) {
+                noise += weight[n] * weight[n] / nodes.packings[n];
+            }
+            return noise;
+        }
+    }
+    return 0.0;
+}
+
+enum dig_status dig_approach_added(const struct dig_curve_set *const set, const size_t trajectory,
+                                   const struct dig_gravel *const   gravel,
+                                   const struct dig_approach *const approach,
+                                   struct dig_added *const          added)
 {
     assert(set != NULL && trajectory < set->trajectories && gravel != NULL && added != NULL);
-    memset(added, 0, DIG_FORCE_CHANNELS * sizeof added[0]);
+    memset(added, 0, sizeof *added);
     if (!dig_approach_varies(set, trajectory)) {
         return DIG_OK;
     }
@@ -138,20 +160,19 @@ enum dig_status dig_depth_added(const struct dig_curve_set *const set, const siz
     if (memory == NULL) {
         return DIG_ENOMEM;
     }
-    const struct dig_depths           depths = dig_approach_depths(set, trajectory);
-    const struct dig_approached_slot  slot   = { trajectory,
-                                                 { fmin(fmax(depth, depths.least), depths.most), 0.0 },
-                                                 1.0 };
+    struct dig_approached_slot slot = { .trajectory = trajectory, .over_depth = 1.0 };
+    (void)dig_approach_clamp(set, trajectory, approach, &slot.approach);
     const struct dig_curve_set *const at     = dig_approached_make(set, 1, &slot, no_error, memory);
     const struct dig_gravel           within = within_grid(set, gravel);
     struct dig_cell                   plain;
-    struct dig_cell                   deeper;
+    struct dig_cell                   other;
     if (dig_cell_find(set, &within, trajectory, &plain) == DIG_OK &&
-        dig_cell_find(at, &within, 0, &deeper) == DIG_OK) {
+        dig_cell_find(at, &within, 0, &other) == DIG_OK) {
+        added->noise = noise_of(set, trajectory, &slot.approach);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                added[c][k] = dig_cell_mean(&deeper, (enum dig_channel)c, k) -
-                              dig_cell_mean(&plain, (enum dig_channel)c, k);
+                added->value[c][k] = dig_cell_mean(&other, (enum dig_channel)c, k) -
+                                     dig_cell_mean(&plain, (enum dig_channel)c, k);
             }
         }
     }

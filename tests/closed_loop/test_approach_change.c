@@ -1,7 +1,7 @@
-// Tests for closed_loop/model/depth_change.c, on a table whose curves are a known function of
+// Tests for closed_loop/model/approach_change.c, on a table whose curves are a known function of
 // depth.
 
-#include "closed_loop/model/depth_change.h"
+#include "closed_loop/model/approach_change.h"
 #include "tests/approach_table.h"
 
 #include <math.h>
@@ -25,24 +25,49 @@ static void a_deeper_dig_adds_what_the_table_says(void **state)
 {
     (void)state;
     const struct dig_curve_set *const set = &table.cube.set;
-    double                            added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    struct dig_added                  added;
     for (size_t t = 0; t < 2; t++) {
         for (size_t g = 0; g < CUBE_GRAVELS; g++) {
             const struct dig_curve *const plain = &set->curve[2 * g + t];
-            assert_int_equal(dig_depth_added(set, t, &set->gravel[g], 1.2, added), DIG_OK);
+            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &way[1], &added), DIG_OK);
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 for (size_t k = CORNER; k < DIG_CURVE_POINTS; k++) {
-                    assert_close(added[c][k], 0.44 * (double)plain->mean[c][k],
+                    assert_close(added.value[c][k], 0.44 * (double)plain->mean[c][k],
                                  0.01 * fabs((double)plain->mean[c][CORNER]));
                 }
             }
             // Beyond what was dug, as at the end of it.
-            double beyond[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-            assert_int_equal(dig_depth_added(set, t, &set->gravel[g], 2.0, beyond), DIG_OK);
-            assert_memory_equal(beyond, added, sizeof added);
-            assert_int_equal(dig_depth_added(set, t, &set->gravel[g], 1.0, added), DIG_OK);
-            assert_close(added[0][CORNER], 0.0, 1e-6);
+            struct dig_added          beyond;
+            const struct dig_approach deep  = { .depth = 2.0 };
+            const struct dig_approach level = dig_approach_plain();
+            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &deep, &beyond), DIG_OK);
+            assert_memory_equal(&beyond, &added, sizeof added);
+            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &level, &added), DIG_OK);
+            assert_close(added.value[0][CORNER], 0.0, 1e-6);
         }
+    }
+}
+
+// Half as far as it was dug adds half as much, and a turned bucket follows the same path.
+static void a_turned_bucket_adds_what_the_table_says(void **state)
+{
+    (void)state;
+    static const struct dig_approach  turned[] = { { 1.0, -0.2 }, { 1.0, 0.2 } };
+    static const struct dig_approach  half     = { 1.0, 0.1 };
+    const struct dig_curve_set *const set      = &table.cube.set;
+    struct dig_added                  added;
+    approach_table_init(&table, CUBE_GRAVELS, 2, turned, approach_growing, 0.1, 3);
+    for (size_t g = 0; g < CUBE_GRAVELS; g++) {
+        const struct dig_curve *const plain = &set->curve[2 * g];
+        assert_int_equal(dig_approach_added(set, 0, &set->gravel[g], &half, &added), DIG_OK);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                assert_close(added.value[c][k], -0.15 * (double)plain->mean[c][k],
+                             0.01 * fabs((double)plain->mean[c][CORNER]));
+            }
+        }
+        // Half of the mean of three beds, less half of that of three others.
+        assert_close(added.noise, 2.0 * 0.25 / 3.0, 1e-9);
     }
 }
 
@@ -77,22 +102,23 @@ static void the_change_is_one_sigma_of_the_depths(void **state)
 static void a_table_of_one_depth_has_none(void **state)
 {
     (void)state;
-    double change[DIG_FEATURES] = { 1.0 };
-    double added[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double           change[DIG_FEATURES] = { 1.0 };
+    struct dig_added added;
     table.cube.set.approaches = NULL;
     assert_int_equal(dig_depth_change(&table.cube.set, 0, NULL, change), DIG_OK);
     assert_close(change[0], 0.0, 0.0);
-    assert_int_equal(dig_depth_added(&table.cube.set, 0, &table.cube.gravel[0], 1.2, added),
+    assert_int_equal(dig_approach_added(&table.cube.set, 0, &table.cube.gravel[0], &way[1], &added),
                      DIG_OK);
-    assert_close(added[0][200], 0.0, 0.0);
+    assert_close(added.value[0][200], 0.0, 0.0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_deeper_dig_adds_what_the_table_says, set_up),
+        cmocka_unit_test(a_turned_bucket_adds_what_the_table_says),
         cmocka_unit_test_setup(the_change_is_one_sigma_of_the_depths, set_up),
         cmocka_unit_test_setup(a_table_of_one_depth_has_none, set_up),
     };
-    return cmocka_run_group_tests_name("depth_change", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("approach_change", tests, NULL, NULL);
 }
