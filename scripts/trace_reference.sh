@@ -46,7 +46,7 @@ for gravel in $(cd "$here" && printf '%s\n' *rho*__simpleA.csv | sed -E 's/(_see
     } >"$work/campaign.yaml"
     "$bin/digloop" trace "$table" "$work" --json "$work/trace.json" 2>"$work/err" || { cat "$work/err"; exit 1; }
     printf '%-32s %4d  %-19s %-18s %-16s %-16s %-17s %8.3g %6.3f %6.3f %6.3f %6.3f\n' "$gravel" $((2 * ${#beds[@]})) \
-        "$(field verdict '\[[^]]*\]')" "$(interval "$(whole | sed 's/.*"effects": //; s/"material": .*//')")" \
+        "$(field verdict '\[[^]]*\]')" "$(interval "$(whole | sed 's/"material": .*//; s/.*"effects": //')")" \
         "$(interval "$(field friction '.*')")" "$(interval "$(field rolling '.*')")" \
         "$(interval "$(field density_kgpm3 '.*')")" "$(field soil '[0-9.e+-]+')" "$(holdout before)" \
         "$(holdout after)" "$(other_beds)" "$(field noise_floor '[0-9.e+-]+')"

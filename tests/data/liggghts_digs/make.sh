@@ -4,6 +4,7 @@
 #                                           GRAVEL_seedN__TRAJECTORY.csv beside this file
 #   ./make.sh muF_murR_rhoD SEED            the same of a plain gravel, named by its parameters
 #   ./make.sh muF_murR_rhoD_bucketB SEED    the same with a bucket of its own friction and rolling friction B
+#   ./make.sh GRAVEL_muF_murR_rhoD_bucketB SEED   and with the effect of GRAVEL
 #   ./make.sh GRAVEL SEED scratch           a small scene, seconds: the phases' means and
 #                                           the spheres of the levelled bed on stdout, as small.csv has them
 # OUT=FOLDER: recordings go there. SCENE=product: config/scenes/product.yaml in place of the rig's, at two thirds of the time step.
@@ -47,7 +48,17 @@ young=5e6
 bucket= # its friction and rolling friction; none: the grains' own
 normal=hooke roll=epsd2 wall_type=1
 pull=0 stick=0 # cohesion energy density between grains, and between grains and bucket and walls
+kind=$gravel
 case $gravel in
+*mu[0-9]*_mur*_rho*)
+    numbers=mu${gravel#*mu} kind=${gravel%%mu[0-9]*}
+    kind=${kind%_} kind=${kind:-plain}
+    friction=${numbers#mu} friction=${friction%%_*}
+    rolling=${numbers#*_mur} rolling=${rolling%%_*}
+    density=${numbers#*_rho} density=${density%%_*}
+    case $numbers in *_bucket*) bucket=${numbers#*_bucket} ;; esac ;;
+esac
+case $kind in
 plain) ;;
 poly) radii=".003 .00375 .005" shares=".3 .4 .3" ;;
 cohesion) pull=1e5 ;; # and at the walls, which are of the grains' type
@@ -61,11 +72,6 @@ other) friction=.7 density=1500 ;;
 slope_up) slope_deg=8 ;;
 slope_down) slope_deg=-8 ;;
 hertz) normal=hertz roll=cdt ;;
-mu*_mur*_rho*) # a plain gravel by its parameters
-    friction=${gravel#mu} friction=${friction%%_*}
-    rolling=${gravel#*_mur} rolling=${rolling%%_*}
-    density=${gravel#*_rho} density=${density%%_*}
-    case $gravel in *_bucket*) bucket=${gravel#*_bucket} ;; esac ;;
 *) echo "gravel: $gravel, expected muF_murR_rhoD, muF_murR_rhoD_bucketB or one of the case above" >&2; exit 2 ;;
 esac
 

@@ -16,6 +16,14 @@ for seed in 1 2 3; do
         done
     done
 done
+for kind in obstacle cohesion_all; do # one bed each
+    gravel=${kind}_mu0.6_mur0.5_rho2300_bucket0.4
+    for trajectory in simpleA actual; do
+        [ ! -e "$here/effects/${gravel}_seed1__$trajectory.csv" ] || continue
+        echo "effects/$gravel seed 1 $trajectory"
+        [ "${1:-}" = -n ] || SCENE=product OUT="$here/effects" "$here/../liggghts_digs/make.sh" $gravel 1 $trajectory
+    done
+done
 fine=mu0.6_mur0.4_rho2200_bucket0.4 # an hour
 if [ ! -e "$here/fine/${fine}_seed1__simpleA.csv" ]; then
     echo "fine/$fine seed 1 simpleA"
