@@ -16,6 +16,10 @@
 // goes on as it ended: one of 50 Hz lacks up to 20 ms.
 static const double held_share = 0.25;
 
+// Of two trajectories that a path fits alike it follows the one against which the bucket is turned
+// less.
+static const double turn_share = 0.1;
+
 // The recording's columns that matter, as plain arrays over its rows.
 struct columns {
     size_t  rows;
@@ -158,8 +162,9 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                                        struct dig_alignment_part *const best_part,
                                        struct dig_error *const          error)
 {
-    int best   = -1;
-    *best_part = (struct dig_alignment_part){ .to = 1.0, .off = (double)INFINITY };
+    int    best  = -1;
+    double least = INFINITY;
+    *best_part   = (struct dig_alignment_part){ .to = 1.0, .off = (double)INFINITY };
     for (size_t t = 0; t < set->trajectories; t++) {
         struct dig_approach       made     = dig_approach_plain();
         struct dig_approach       approach = dig_approach_plain();
@@ -174,7 +179,9 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
             part            = dig_alignment_align(recording, c->progress, &target);
             made.attack_rad = part.turned_rad;
         }
-        if (part.off < best_part->off) {
+        const double score = hypot(part.off, turn_share * made.attack_rad);
+        if (score < least) {
+            least              = score;
             best               = (int)t;
             *best_part         = part;
             observed->made     = made;

@@ -140,6 +140,26 @@ static void depth_and_attack_of_a_dig_are_told_where_the_table_has_them(void **s
     dig_recording_finish(&r);
 }
 
+// The second trajectory is the first with the bucket turned by less than the table was dug so.
+static void of_trajectories_that_differ_by_a_turn_the_nearer_is_told(void **state)
+{
+    (void)state;
+    const struct dig_approach turned = { 1.0, 0.03 };
+    struct dig_approach_set   others;
+    struct dig_curve_set      set = dug_otherwise(&others);
+    struct dig_observed       o;
+    assert_int_equal(dig_approach_apply(&set.trajectory[0], 0.09, others.depth_m[0], &turned,
+                                        &set.trajectory[1], NULL),
+                     DIG_OK);
+    struct dig_recording r = drive(&set.trajectory[1], 1.3, slow_wave);
+    assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
+    assert_int_equal(o.trajectory, 1);
+    assert_close(o.made.attack_rad, 0.0, 1e-3);
+    assert_int_equal(dig_observe_as_dug(&set, &r, &o, NULL), DIG_OK);
+    assert_int_equal(o.trajectory, 1);
+    dig_recording_finish(&r);
+}
+
 static void what_lies_beyond_the_table_is_distance(void **state)
 {
     (void)state;
@@ -333,6 +353,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pace_and_place_do_not_matter),
         cmocka_unit_test(depth_and_attack_of_a_dig_are_told_where_the_table_has_them),
+        cmocka_unit_test(of_trajectories_that_differ_by_a_turn_the_nearer_is_told),
         cmocka_unit_test(what_lies_beyond_the_table_is_distance),
         cmocka_unit_test(a_path_of_another_kind_is_refused_and_writes_nothing),
         cmocka_unit_test(short_gaps_are_bridged_by_what_lies_about_them),
