@@ -4,6 +4,7 @@
 #include "estimator/approach/approach_slots.h"
 
 #include <math.h>
+#include <string.h>
 
 // How far a dig is off features of the table, in variances of one dig.
 static double squares_off(const struct dig_trace_work *const w,
@@ -48,9 +49,18 @@ static enum dig_status compare(const struct dig_trace_work *const w, const doubl
     return DIG_OK;
 }
 
+static void add_value(struct dig_measured *const dig, const double sign)
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            dig->value[c][k] += dig->measured[c] ? sign * dig->added.value[c][k] : 0.0;
+        }
+    }
+}
+
 // Takes off what another approach, where a dig's path tells it, adds to the plain dig of that
-// gravel. A path that is longer as it begins in the air is told by what it resists: as it would at
-// depth 1.
+// gravel; what was taken off of another gravel is put back. A path that is longer as it begins in
+// the air is told by what it resists: as it would at depth 1.
 static enum dig_status take_off_approach(const struct dig_trace_work *const w, const double place[],
                                          struct dig_measured *const dig)
 {
@@ -60,6 +70,8 @@ static enum dig_status take_off_approach(const struct dig_trace_work *const w, c
     };
     struct dig_added added[WAYS];
     double           squares[WAYS];
+    add_value(dig, 1.0);
+    memset(&dig->added, 0, sizeof dig->added);
     for (int i = 0; i < WAYS; i++) {
         const enum dig_status status = compare(w, place, dig, &way[i], &added[i], &squares[i]);
         if (status != DIG_OK) {
@@ -67,26 +79,23 @@ static enum dig_status take_off_approach(const struct dig_trace_work *const w, c
         }
     }
     const int chosen = squares[MADE] < squares[LEVEL] ? MADE : LEVEL;
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            dig->value[c][k] -= dig->measured[c] ? added[chosen].value[c][k] : 0.0;
-        }
-    }
-    dig->made      = way[chosen];
-    dig->taken_off = way[chosen];
-    dig->added     = added[chosen];
+    dig->taken_off   = way[chosen];
+    dig->added       = added[chosen];
+    add_value(dig, -1.0);
     return DIG_OK;
 }
 
+// *any: a path tells one.
 static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
-                                           const double                       place[])
+                                           const double place[], bool *const any)
 {
     enum dig_status status = DIG_OK;
+    *any                   = false;
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         struct dig_measured *const dig = &w->measured[i];
-        if (w->surface->known[dig->trajectory] && dig_approach_is_plain(&dig->taken_off) &&
-            !dig_approach_is_plain(&dig->made)) {
+        if (w->surface->known[dig->trajectory] && !dig_approach_is_plain(&dig->made)) {
             status = take_off_approach(w, place, dig);
+            *any   = true;
         }
     }
     return status;
@@ -146,14 +155,18 @@ static enum dig_status open_depths(const struct dig_trace_work *const w, const d
     return status == DIG_OK ? make_batch(w, place) : status;
 }
 
+// What an approach adds depends on the gravel, and the gravel on what is taken off.
 enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
                                 struct dig_fitted *const plain, struct dig_error *const error)
 {
+    enum { ROUNDS = 3 };
+    bool any = true;
     (void)set_share(w, 1.0);
     enum dig_status status = make_batch(w, NULL);
-    if (status == DIG_OK) {
+    for (int round = 0; round < ROUNDS && status == DIG_OK && any; round++) {
         fit_plain(w, plain);
-        status = take_off_approaches(w, plain->number);
+        status = take_off_approaches(w, plain->number, &any);
+        status = status == DIG_OK ? make_batch(w, plain->number) : status;
     }
     if (status == DIG_OK) {
         status = open_depths(w, plain->number);
