@@ -218,7 +218,7 @@ check: $(test_bins) $(helpers) all jar ## Build and run every test (what `make t
 check-unit: $(test_bins) ## The unit tests alone
 	$(Q)scripts/run_tests.sh -j $(JOBS) $(test_bins)
 
-ASAN_FLAGS := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+ASAN_FLAGS := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 # Tests that repeat, for statistics or in larger beds, what smaller ones do once: minutes under a sanitizer, for nothing new.
 statistics := $(foreach t,approaches_shipped coverage design_shipped effect_noise_shipped \
                 few_packings layers_shipped noise_shipped pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
@@ -228,7 +228,7 @@ check-asan: ## The unit tests under AddressSanitizer and UBSan
 
 check-tsan: ## The threaded units under ThreadSanitizer, built with what they include
 	$(Q)DIG_TEST_QUICK=1 $(MAKE) check-unit BUILD=$(BUILD)/tsan tested="$(threaded_tests)" modules="$(threaded)" \
-	    CFLAGS="-O1 -g -fsanitize=thread"
+	    CFLAGS="-O1 -g1 -fsanitize=thread"
 
 check-valgrind: $(test_bins) ## The unit tests under memcheck
 	$(Q)scripts/setup.sh valgrind
