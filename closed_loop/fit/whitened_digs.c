@@ -11,9 +11,6 @@
 
 enum { LEAST_FEATURES = DIG_FEATURE_BINS / 2 };
 
-// A difference of smoothings that no bin feels.
-static const double least_blur_s = 0.03;
-
 static void features_of(const struct dig_measured *const dig, double feature[DIG_FEATURES])
 {
     double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
@@ -23,59 +20,6 @@ static void features_of(const struct dig_measured *const dig, double feature[DIG
         }
     }
     dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
-}
-
-// Ways along a trajectory that one smoothing takes in.
-enum { BLUR_STEPS = 8 };
-
-// The plain dig's curves as another smoothing's half would leave them.
-static void blur(const struct dig_curve_set *const set, const size_t trajectory,
-                 const double half_s, const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
-                 double blurred[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
-{
-    const struct dig_trajectory *const t       = &set->trajectory[trajectory];
-    const double                       end_s   = dig_trajectory_duration_s(t);
-    const double                       whole_m = dig_trajectory_path_m(t, set->tooth_m, end_s);
-    memset(blurred, 0, DIG_FORCE_CHANNELS * sizeof blurred[0]);
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double at_s =
-            dig_trajectory_time_s(t, set->tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
-        for (int i = -BLUR_STEPS; i <= BLUR_STEPS; i++) {
-            const double from_s = fmin(fmax(at_s + half_s * (double)i / BLUR_STEPS, 0.0), end_s);
-            const double point =
-                dig_trajectory_path_m(t, set->tooth_m, from_s) / whole_m * (DIG_CURVE_POINTS - 1);
-            const size_t low  = (size_t)fmin(floor(point), DIG_CURVE_POINTS - 2);
-            const double high = point - (double)low;
-            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                blurred[c][k] += ((1.0 - high) * curve[c][low] + high * curve[c][low + 1]) /
-                                 (2 * BLUR_STEPS + 1);
-            }
-        }
-    }
-}
-
-// All digs are smoothed over the same time: one that is faster than the table's over more of its
-// way. Takes off what that makes of the plain dig; variances of two smoothings add.
-static void take_off_blur(const struct dig_response_surface *const surface,
-                          const struct dig_measured *const dig, const double place[DIG_AXES],
-                          double feature[DIG_FEATURES])
-{
-    const double half_s = DIG_SMOOTH_HALF_s * sqrt(fabs(dig->pace * dig->pace - 1.0));
-    if (place == NULL || !(half_s > least_blur_s)) {
-        return;
-    }
-    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double blurred[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double sharp[DIG_FEATURES];
-    double soft[DIG_FEATURES];
-    dig_response_surface_curve(surface, (size_t)dig->trajectory, place, curve);
-    blur(surface->set, (size_t)dig->trajectory, half_s, (const double(*)[DIG_CURVE_POINTS])curve,
-         blurred);
-    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, sharp);
-    dig_features_of((const double(*)[DIG_CURVE_POINTS])blurred, soft);
-    for (size_t f = 0; f < DIG_FEATURES; f++) {
-        feature[f] -= dig->pace > 1.0 ? soft[f] - sharp[f] : sharp[f] - soft[f];
-    }
 }
 
 static size_t group_of(struct dig_whitened_digs *const batch, const size_t trajectory)
@@ -358,8 +302,7 @@ enum dig_status dig_whitened_digs_make(const struct dig_response_surface *const 
         dig->group                              = group_of(batch, t);
         dig->measured                           = i;
         batch->group[dig->group].digs++;
-        features_of(&measured[i], feature[batch->digs]);
-        take_off_blur(surface, &measured[i], place, feature[batch->digs++]);
+        features_of(&measured[i], feature[batch->digs++]);
     }
     enum dig_status status = batch->digs > 0 ? DIG_OK : DIG_ENOMATCH;
     for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {

@@ -113,29 +113,8 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
     }
     const struct dig_route route = dig_route_make(&set->trajectory[dig->trajectory], set->tooth_m);
     return of > 0 && (double)told >= enough_share * (double)of &&
-           dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m, set->smooth_half_s,
-                              observation) == DIG_OK;
-}
-
-// Pace between a twentieth and the end less that: the ends are blended and may be cut.
-static double pace_of(const struct dig_curve_set *const   set,
-                      const struct dig_machine_dig *const dig,
-                      const struct dig_window *const      window)
-{
-    const struct dig_trajectory *const t      = &set->trajectory[dig->trajectory];
-    double                             from_s = (double)NAN;
-    double                             to_s   = (double)NAN;
-    for (size_t i = 0; i < window->count && !(to_s >= 0.0 || to_s < 0.0); i++) {
-        if (window->progress[i] >= 0.05 && !(from_s >= 0.0 || from_s < 0.0)) {
-            from_s = window->time_s[i];
-        }
-        if (window->progress[i] >= 0.95) {
-            to_s = window->time_s[i];
-        }
-    }
-    const double table_s =
-        dig_trajectory_time_s(t, set->tooth_m, 0.95) - dig_trajectory_time_s(t, set->tooth_m, 0.05);
-    return to_s > from_s ? table_s / (to_s - from_s) : 1.0;
+           dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m,
+                              set->smooth_half_s / dig->pace, observation) == DIG_OK;
 }
 
 static size_t beside(const struct dig_machine_dig *const dig, const size_t at, const double by_s)
@@ -194,7 +173,7 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
             status               = measured->measured[c] ? DIG_OK : DIG_ENOMATCH;
             measured->first      = o.first;
             measured->last       = o.last;
-            measured->pace       = status == DIG_OK ? pace_of(set, dig, window) : 1.0;
+            measured->pace       = dig->pace;
             measured->trajectory = dig->trajectory;
             tell_pitch(dig, measured);
         }

@@ -23,6 +23,9 @@ static const double spacing_share = 0.025;
 static const double limit_share   = 0.09;
 static const double turned_share  = 0.12;
 
+// The ends of a dig are blended and may be cut: they do not tell its pace.
+static const double blended_share = 0.05;
+
 // Of the samples that tell the moment: a drive that fewer tell as well is left out.
 static const double told_share = 0.5;
 
@@ -195,17 +198,29 @@ static size_t find_dumped(const struct dig_machine_dig *const dig)
     return dig->samples;
 }
 
+// middle_s: rig time from a twentieth of the path to the end less that.
+static double pace_of(const struct dig_curve_set *const   set,
+                      const struct dig_machine_dig *const dig, const double middle_s)
+{
+    const struct dig_trajectory *const t = &set->trajectory[dig->trajectory];
+    const double table_s = dig_trajectory_time_s(t, set->tooth_m, 1.0 - blended_share) -
+                           dig_trajectory_time_s(t, set->tooth_m, blended_share);
+    return middle_s > 0.0 ? table_s / middle_s : 1.0;
+}
+
 // Where along the recording the trajectory begins and ends.
 static void split(const struct dig_machine *const machine, const struct dig_curve_set *const set,
                   const struct dig_route *const route, const struct vertices *const v,
                   const struct found *const found, struct dig_machine_dig *const dig)
 {
     // The last sample still at the start, and the first at the end.
-    const size_t from = v->sample[found->start > 12 ? found->start - 12 : 0];
-    const size_t to   = found->end < v->count ? v->sample[found->end] : dig->samples;
-    double       last = 0.0;
-    dig->contact      = from;
-    dig->end          = to;
+    const size_t from   = v->sample[found->start > 12 ? found->start - 12 : 0];
+    const size_t to     = found->end < v->count ? v->sample[found->end] : dig->samples;
+    double       last   = 0.0;
+    double       from_s = (double)NAN; // of the middle, and to
+    double       to_s   = (double)NAN;
+    dig->contact        = from;
+    dig->end            = to;
     for (size_t i = from; i < dig->samples; i++) {
         const struct dig_path_point point = point_of(machine, set, dig, i);
         const struct dig_path_point at    = dig_track_turned(&dig->track, &point);
@@ -218,11 +233,14 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
         if (last <= 0.0) {
             dig->contact = i + 1;
         }
+        from_s = isnan(from_s) && last >= blended_share ? dig->time_s[i] : from_s;
+        to_s   = isnan(to_s) && last >= 1.0 - blended_share ? dig->time_s[i] : to_s;
         if (last >= 1.0 - 1e-9) {
             dig->end = i;
             break;
         }
     }
+    dig->pace              = pace_of(set, dig, (to_s - from_s) / sqrt(dig->lambda));
     const double contact_s = dig->time_s[dig->contact < dig->samples ? dig->contact : 0];
     dig->before_end        = dig_machine_dig_sample_at(dig, contact_s - clear_s);
     dig->after             = find_dumped(dig);

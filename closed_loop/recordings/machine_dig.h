@@ -31,6 +31,7 @@ struct dig_machine_dig {
     struct dig_track   track;               // where the route lies, rig scale
     size_t             before_end, contact; // first samples not in the air before, in the soil
     size_t             end;                 // first sample past the trajectory
+    double             pace;  // duration of the table's trajectory / of this dig, at rig scale
     size_t             after; // first sample of the air after the dump; samples: there is none
 };
 

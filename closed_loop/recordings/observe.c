@@ -104,6 +104,7 @@ static double longest_gap_s(const struct columns *const c, const size_t held)
 // What the recording lacks of the trajectory: seconds of its own pace before and after it, and the
 // progress between which smoothed values are those of a whole dig.
 struct ends {
+    double half_s; // of the smoothing: of as much of the path as the table's is
     double before_s, after_s;
     double first, last;
 };
@@ -130,17 +131,15 @@ static size_t extend(const struct ends *const ends, const struct columns *const 
 
 // Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when rows
 // lack it for longer than the smoothing reaches to one side.
-static bool read_channel(const struct dig_curve_set *const set,
-                         const struct dig_recording *const recording, const struct columns *const c,
+static bool read_channel(const struct dig_recording *const recording, const struct columns *const c,
                          const struct ends *const ends, const enum dig_channel channel,
                          double value[DIG_CURVE_POINTS])
 {
     size_t     held = hold_channel(recording, c, channel);
-    const bool told =
-        held == c->rows || (held >= 2 && longest_gap_s(c, held) <= set->smooth_half_s);
+    const bool told = held == c->rows || (held >= 2 && longest_gap_s(c, held) <= ends->half_s);
     if (told) {
         held = extend(ends, c, held);
-        dig_curve_smooth(held, c->held_t_s, c->raw, set->smooth_half_s, c->smooth);
+        dig_curve_smooth(held, c->held_t_s, c->raw, ends->half_s, c->smooth);
     }
     struct dig_alignment_place at = { .row = 0 };
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -243,8 +242,8 @@ static struct ends ends_of(const struct dig_curve_set *const set, const size_t t
                            const struct dig_alignment_part *const part, const double pace)
 {
     const struct dig_trajectory *const t      = &set->trajectory[trajectory];
-    const double                       half_s = set->smooth_half_s;
-    struct ends                        ends   = { .last = 1.0 };
+    const double                       half_s = set->smooth_half_s / pace;
+    struct ends                        ends   = { .half_s = half_s, .last = 1.0 };
     ends.before_s = dig_trajectory_time_s(t, set->tooth_m, part->from) / pace;
     ends.after_s =
         (dig_trajectory_duration_s(t) - dig_trajectory_time_s(t, set->tooth_m, part->to)) / pace;
@@ -286,13 +285,13 @@ static enum dig_status observe(const struct dig_curve_set *const set,
     o.last                           = ends.last;
     for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
         o.measured[channel] =
-            read_channel(set, &rows, &along, &ends, (enum dig_channel)channel, o.value[channel]);
+            read_channel(&rows, &along, &ends, (enum dig_channel)channel, o.value[channel]);
     }
     if (!o.measured[DIG_CHANNEL_MY_Nm]) {
         return dig_error_set(error, DIG_EINVAL,
                              "My_Nm is missing for more than %.2f s, expected the moment of the "
                              "whole dig",
-                             set->smooth_half_s);
+                             ends.half_s);
     }
     *observed = o;
     return DIG_OK;

@@ -47,7 +47,7 @@ DIG_MUST_CHECK enum dig_status dig_observe_as_dug(const struct dig_curve_set *se
                                                   struct dig_error           *error);
 
 /// Finds the trajectory the recording followed, at its own pace and at least six tenths of it, and
-/// samples the smoothed moment (+-set->smooth_half_s of the recording's time) at DIG_CURVE_POINTS
+/// samples the smoothed moment (+-set->smooth_half_s over the pace) at DIG_CURVE_POINTS
 /// of its path progress. The recording must be of the table's size (rig scale); where it stands in
 /// space does not matter.
 ///

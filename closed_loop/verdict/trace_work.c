@@ -6,6 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+// The least that a depth which nobody tells is open by.
+#define LEAST_SHARE 0.125
+
 // How far a dig is off features of the table, in variances of one dig.
 static double squares_off(const struct dig_trace_work *const w,
                           const struct dig_measured *const dig, const double model[DIG_FEATURES],
@@ -58,44 +61,49 @@ static void add_value(struct dig_measured *const dig, const double sign)
     }
 }
 
-// Takes off what another approach, where a dig's path tells it, adds to the plain dig of that
-// gravel; what was taken off of another gravel is put back. A path that is longer as it begins in
-// the air is told by what it resists: as it would at depth 1.
-static enum dig_status take_off_approach(const struct dig_trace_work *const w, const double place[],
-                                         struct dig_measured *const dig)
+static void put_back(struct dig_measured *const dig)
 {
-    enum { MADE, LEVEL, WAYS };
-    const struct dig_approach way[WAYS] = {
-        [MADE] = dig_approach_normalized(&dig->made), [LEVEL] = { 1.0, dig->made.attack_rad }
-    };
-    struct dig_added added[WAYS];
-    double           squares[WAYS];
     add_value(dig, 1.0);
     memset(&dig->added, 0, sizeof dig->added);
-    for (int i = 0; i < WAYS; i++) {
-        const enum dig_status status = compare(w, place, dig, &way[i], &added[i], &squares[i]);
+    dig->taken_off = dig_approach_plain();
+}
+
+// A path that is longer than the table's is that of a deeper dig, or begins in the air: as deep as
+// it was made, level with the table's, or whichever what it resists is liker to.
+enum way { MADE, LEVEL, LIKER };
+
+// Takes off what another approach, where a dig's path tells it, adds to the plain dig of that
+// gravel; what was taken off of another gravel is put back.
+static enum dig_status take_off_approach(const struct dig_trace_work *const w, const double place[],
+                                         enum way way, struct dig_measured *const dig)
+{
+    const struct dig_approach approach[] = {
+        [MADE] = dig_approach_normalized(&dig->made), [LEVEL] = { 1.0, dig->made.attack_rad }
+    };
+    struct dig_added added[2];
+    double           squares[2];
+    put_back(dig);
+    for (int i = MADE; i <= LEVEL; i++) {
+        const enum dig_status status = compare(w, place, dig, &approach[i], &added[i], &squares[i]);
         if (status != DIG_OK) {
             return status;
         }
     }
-    const int chosen = squares[MADE] < squares[LEVEL] ? MADE : LEVEL;
-    dig->taken_off   = way[chosen];
-    dig->added       = added[chosen];
+    way            = way != LIKER ? way : squares[MADE] < squares[LEVEL] ? MADE : LEVEL;
+    dig->taken_off = approach[way];
+    dig->added     = added[way];
     add_value(dig, -1.0);
     return DIG_OK;
 }
 
-// *any: a path tells one.
 static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
-                                           const double place[], bool *const any)
+                                           const double place[], const enum way way)
 {
     enum dig_status status = DIG_OK;
-    *any                   = false;
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         struct dig_measured *const dig = &w->measured[i];
         if (w->surface->known[dig->trajectory] && !dig_approach_is_plain(&dig->made)) {
-            status = take_off_approach(w, place, dig);
-            *any   = true;
+            status = take_off_approach(w, place, way, dig);
         }
     }
     return status;
@@ -114,6 +122,23 @@ static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *c
     dig_hypothesis_fit(w->batch, w->soil, &none, middle, DIG_FIT_THOROUGH, plain);
 }
 
+// Of digs that are whitened otherwise, too, in units of the table. What was taken off was dug in
+// few beds: so much is to be expected of it in the digs about their means.
+static double misfit_of(const struct dig_trace_work *const w, const struct dig_fitted *const plain)
+{
+    double misfit = plain->misfit;
+    for (size_t i = 0; i < w->batch->digs; i++) {
+        const struct dig_whitened_digs_dig *const   dig   = &w->batch->dig[i];
+        const struct dig_whitened_digs_group *const group = &w->batch->group[dig->group];
+        const double about = (double)group->features * (1.0 - 1.0 / (double)group->digs);
+        misfit += group->log_det - about * w->measured[dig->measured].added.noise;
+        for (size_t k = 0; k < group->features; k++) {
+            misfit += 2.0 * log(group->amplitude[group->feature[k] / DIG_FEATURE_BINS]);
+        }
+    }
+    return misfit;
+}
+
 static bool set_share(const struct dig_trace_work *const w, const double share)
 {
     bool any = false;
@@ -130,7 +155,7 @@ static bool set_share(const struct dig_trace_work *const w, const double share)
 // ground lies where the table has it is not to pay for others'.
 static enum dig_status open_depths(const struct dig_trace_work *const w, const double place[])
 {
-    static const double shares[] = { 1.0, 0.5, 0.25, 0.125 };
+    static const double shares[] = { 1.0, 0.5, 0.25, LEAST_SHARE };
     double              best     = 1.0;
     double              least    = INFINITY;
     enum dig_status     status   = DIG_OK;
@@ -143,31 +168,69 @@ static enum dig_status open_depths(const struct dig_trace_work *const w, const d
         status = make_batch(w, place);
         if (status == DIG_OK) {
             fit_plain(w, &plain);
-            double misfit = plain.misfit;
-            for (size_t g = 0; g < w->batch->groups; g++) {
-                misfit += (double)w->batch->group[g].digs * w->batch->group[g].log_det;
-            }
-            best  = misfit < least ? shares[i] : best;
-            least = fmin(misfit, least);
+            const double misfit = misfit_of(w, &plain);
+            best                = misfit < least ? shares[i] : best;
+            least               = fmin(misfit, least);
         }
     }
     (void)set_share(w, best);
     return status == DIG_OK ? make_batch(w, place) : status;
 }
 
-// What an approach adds depends on the gravel, and the gravel on what is taken off.
+// What an approach adds depends on the gravel, and the gravel on what is taken off: begins with one
+// way for all digs, and lets each go its own.
+static enum dig_status settle(const struct dig_trace_work *const w, const enum way begin,
+                              struct dig_fitted *const plain)
+{
+    enum { ROUNDS = 3 };
+    for (size_t i = 0; i < w->digs; i++) {
+        put_back(&w->measured[i]);
+    }
+    enum dig_status status = make_batch(w, NULL);
+    for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
+        fit_plain(w, plain);
+        status = take_off_approaches(w, plain->number, round == 0 ? begin : LIKER);
+        status = status == DIG_OK ? make_batch(w, plain->number) : status;
+    }
+    if (status == DIG_OK) {
+        fit_plain(w, plain);
+    }
+    return status;
+}
+
+// Settled from either beginning, and kept as the digs are likeliest.
+static enum dig_status settle_best(const struct dig_trace_work *const w,
+                                   struct dig_fitted *const           plain)
+{
+    bool any  = false;
+    bool deep = false;
+    for (size_t i = 0; i < w->digs; i++) {
+        any  = any || !dig_approach_is_plain(&w->measured[i].made);
+        deep = deep || fabs(dig_approach_normalized(&w->measured[i].made).depth - 1.0) > 0.0;
+    }
+    (void)set_share(w, deep ? LEAST_SHARE : 1.0);
+    if (!any) {
+        const enum dig_status status = make_batch(w, NULL);
+        if (status == DIG_OK) {
+            fit_plain(w, plain);
+        }
+        return status;
+    }
+    enum dig_status status = settle(w, MADE, plain);
+    if (deep && status == DIG_OK) {
+        const double made = misfit_of(w, plain);
+        status            = settle(w, LEVEL, plain);
+        if (status == DIG_OK && made < misfit_of(w, plain)) {
+            status = settle(w, MADE, plain);
+        }
+    }
+    return status;
+}
+
 enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
                                 struct dig_fitted *const plain, struct dig_error *const error)
 {
-    enum { ROUNDS = 3 };
-    bool any = true;
-    (void)set_share(w, 1.0);
-    enum dig_status status = make_batch(w, NULL);
-    for (int round = 0; round < ROUNDS && status == DIG_OK && any; round++) {
-        fit_plain(w, plain);
-        status = take_off_approaches(w, plain->number, &any);
-        status = status == DIG_OK ? make_batch(w, plain->number) : status;
-    }
+    enum dig_status status = settle_best(w, plain);
     if (status == DIG_OK) {
         status = open_depths(w, plain->number);
     }

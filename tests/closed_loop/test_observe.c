@@ -56,6 +56,12 @@ static double slow_wave(const double time_s)
     return 2.0 + sin(0.8 * time_s);
 }
 
+// Which the smoothing takes a third of.
+static double quick_wave(const double time_s)
+{
+    return 2.0 + sin(9.0 * time_s);
+}
+
 // Whatever the pace and the place, the dig is recognised and its moment stands where the path says.
 static void pace_and_place_do_not_matter(void **state)
 {
@@ -78,6 +84,30 @@ static void pace_and_place_do_not_matter(void **state)
                 if (time_s > 0.3 && time_s < end_s - 0.3) {
                     assert_close(o.moment_Nm[k], slow_wave(time_s), blur_most);
                 }
+            }
+            dig_recording_finish(&r);
+        }
+    }
+}
+
+// A dig is smoothed over as much of its path as the table's, however fast it was.
+static void a_fast_dig_is_read_as_the_tables(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set      = two_digs();
+    static const double        slower[] = { 1.0 / 3.0, 2.0 };
+    struct dig_observed        plain;
+    struct dig_observed        o;
+    for (int t = 0; t < 2; t++) {
+        struct dig_recording r = drive(&set.trajectory[t], 1.0, quick_wave);
+        assert_int_equal(dig_observe_dig(&set, &r, &plain, NULL), DIG_OK);
+        dig_recording_finish(&r);
+        for (size_t p = 0; p < 2; p++) {
+            r = drive(&set.trajectory[t], slower[p], quick_wave);
+            assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
+            assert_close(o.pace * slower[p], 1.0, 0.01);
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                assert_close(o.value[0][k], plain.value[0][k], 0.02);
             }
             dig_recording_finish(&r);
         }
@@ -352,6 +382,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pace_and_place_do_not_matter),
+        cmocka_unit_test(a_fast_dig_is_read_as_the_tables),
         cmocka_unit_test(depth_and_attack_of_a_dig_are_told_where_the_table_has_them),
         cmocka_unit_test(of_trajectories_that_differ_by_a_turn_the_nearer_is_told),
         cmocka_unit_test(what_lies_beyond_the_table_is_distance),

@@ -146,56 +146,6 @@ static void digs_and_models_shrink_alike(void **state)
     free(measured);
 }
 
-// One noiseless simple dig, its moment averaged over +-half_s of rig time, at this pace.
-static void dig_once(const double half_s, const double pace, double y[DIG_FEATURES])
-{
-    const struct dig_trajectory     t        = made_trajectory(MADE_SIMPLE_A);
-    const double                    end_s    = dig_trajectory_duration_s(&t);
-    const double                    whole_m  = dig_trajectory_path_m(&t, 0.09, end_s);
-    const bool                      take     = true;
-    struct dig_measured *const      measured = calloc(1, sizeof *measured);
-    struct dig_whitened_digs *const batch    = malloc(sizeof *batch);
-    double                          place[DIG_AXES];
-    *measured = (struct dig_measured){ .trajectory = MADE_SIMPLE_A, .last = 1.0, .pace = pace };
-    measured->measured[DIG_CHANNEL_MY_Nm] = true;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double at_s = dig_trajectory_time_s(&t, 0.09, (double)k / (DIG_CURVE_POINTS - 1));
-        for (int i = -50; i <= 50; i++) {
-            const double time_s = fmin(fmax(at_s + half_s * i / 50.0, 0.0), end_s);
-            measured->value[DIG_CHANNEL_MY_Nm][k] +=
-                made_moment_Nm(&gravel, MADE_SIMPLE_A,
-                               dig_trajectory_path_m(&t, 0.09, time_s) / whole_m, 0.0) /
-                101.0;
-        }
-    }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, 1, measured, &take, place, batch),
-        DIG_OK);
-    memcpy(y, batch->group[0].mean, DIG_FEATURE_BINS * sizeof y[0]);
-    free(batch);
-    free(measured);
-}
-
-// Smoothing over 0.16 s takes in twice the way of a dig twice as fast: beside the table's own
-// smoothing as sqrt(3) times 0.16 s would.
-static void what_smoothing_does_to_a_fast_dig_is_taken_off(void **state)
-{
-    (void)state;
-    double plain[DIG_FEATURES], fast[DIG_FEATURES], blurred[DIG_FEATURES];
-    double off    = 0.0;
-    double before = 0.0;
-    dig_once(0.0, 1.0, plain);
-    dig_once(sqrt(3.0) * DIG_SMOOTH_HALF_s, 2.0, fast);
-    dig_once(sqrt(3.0) * DIG_SMOOTH_HALF_s, 1.0, blurred);
-    for (size_t k = 0; k < DIG_FEATURE_BINS; k++) {
-        off    = fmax(off, fabs(fast[k] - plain[k]));
-        before = fmax(before, fabs(blurred[k] - plain[k]));
-    }
-    assert_true(before > 0.1);
-    assert_true(off < 0.25 * before);
-}
-
 // Digs that were measured in part are compared in that part; of nothing there is no batch.
 static void only_what_all_digs_have_is_compared(void **state)
 {
@@ -277,7 +227,6 @@ int main(void)
         cmocka_unit_test(what_the_machine_adds_is_taken_off),
         cmocka_unit_test(what_approaches_add_is_shared),
         cmocka_unit_test(digs_and_models_shrink_alike),
-        cmocka_unit_test(what_smoothing_does_to_a_fast_dig_is_taken_off),
         cmocka_unit_test(only_what_all_digs_have_is_compared),
         cmocka_unit_test(a_size_known_from_few_beds_is_integrated_out),
     };

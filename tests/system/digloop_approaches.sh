@@ -16,4 +16,26 @@ scripts/trace_approaches.py tables/product.sqlite tables/product.sqlite mixed >"
 sed 's/^/      /' "$work/out"
 check "nor has what was dug at the table's own depths" [ "$(grep -c 'campaigns, named 0;' "$work/out")" = 2 ]
 check "where a path tells the depth the density is told" grep -q '^force recordings: .* density 3$' "$work/out"
+# Three times as fast as the table's, gravel .6/.45/2300.
+scene=$PWD/config/scenes/product.yaml machine=$PWD/config/machines/zx200_trench.yaml
+told() { # KEY: value, and ends of its interval
+    tr -d '\n' <"$work/$kind.json" | sed -E "s/.*\"material\": .*\"$1\": \{\"value\": ([^,]*), \"low\": ([^,]*), \"high\": ([^}]*)\}.*\"material_before.*/\1 \2 \3/"
+}
+for kind in force machine; do
+    mkdir "$work/$kind"
+    { echo "scene: $scene"; [ $kind = force ] || echo "machine: $machine"; echo "recordings:"; } >"$work/$kind/campaign.yaml"
+    role=identify
+    for along in simpleA simpleB actual; do
+        dug=tests/data/product/fast/$along.csv
+        if [ $kind = force ]; then cp $dug "$work/$kind/$along.csv"; else
+            "$BIN/digrig" record $dug --machine "$machine" --scene "$scene" -q -o "$work/$kind/$along.csv"
+        fi
+        echo "  - {file: $along.csv, trajectory: $along, role: $role}" >>"$work/$kind/campaign.yaml"
+        role=fit
+    done
+    "$BIN/digloop" trace tables/product.sqlite "$work/$kind" --json "$work/$kind.json" -q 2>"$work/err" || cat "$work/err"
+    echo "      $kind: $(grep -o '"verdict": [^]]*]' "$work/$kind.json"), friction $(told friction), rolling $(told rolling), density $(told density_kgpm3)"
+    check "a fast dig has no effect of the list ($kind)" grep -qE '"verdict": \["(none|unlisted)"\]' "$work/$kind.json"
+    check "and its density is told" within "$(told density_kgpm3 | cut -d ' ' -f 1)" 2070 2530
+done
 finish
