@@ -126,6 +126,19 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
     dig_lower_invert(n, covariance, error->inverse);
 }
 
+double dig_common_error_of_approaches(const struct dig_whitened_digs_group *const group)
+{
+    struct dig_common_error only = { .even = group->added_noise };
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        only.size[3][f] = DIG_COMMON_ERROR_OF_APPROACHES * group->added[f];
+    }
+    if (!(group->added_noise > 0.0)) {
+        return 0.0;
+    }
+    dig_common_error_build(group, &only);
+    return only.noise;
+}
+
 double dig_common_error_squares(const struct dig_whitened_digs_group *const group,
                                 const struct dig_common_error *const error, double residual[])
 {

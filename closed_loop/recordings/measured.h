@@ -15,7 +15,8 @@ enum dig_use { DIG_USE_IDENTIFY, DIG_USE_FIT, DIG_USE_HOLDOUT };
 
 #define DIG_MEASURED_MAX 64
 
-/// What a dig at another approach adds to the plain one, as the table has it.
+/// What a dig at another approach adds to the plain one, as the table has it: N m and N at rig
+/// scale, over the plain path.
 struct dig_added {
     double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double noise; // as it was dug in few beds, in variances of one dig

@@ -141,17 +141,6 @@ void dig_trace_fill_residuals(const struct dig_trace_work *const w,
     }
 }
 
-// Of a group's v, what other approaches bring in.
-static double noise_of_approaches(const struct dig_whitened_digs_group *const group)
-{
-    struct dig_common_error only = { .even = group->added_noise };
-    for (size_t f = 0; f < DIG_FEATURES; f++) {
-        only.size[0][f] = DIG_COMMON_ERROR_OF_APPROACHES * group->added[f];
-    }
-    dig_common_error_build(group, &only);
-    return only.noise;
-}
-
 // v of a dig at a fitted hypothesis: what its trajectory's digs share, but of approaches its own.
 // Of a trajectory that no dig was fitted along the surface's.
 static double noise_of(const struct dig_trace_work *const w, const struct dig_fitted *const fitted,
@@ -160,7 +149,7 @@ static double noise_of(const struct dig_trace_work *const w, const struct dig_fi
     const size_t trajectory = (size_t)dig->trajectory;
     for (size_t g = 0; g < w->batch->groups; g++) {
         if (w->batch->group[g].trajectory == trajectory) {
-            return fitted->noise[g] - noise_of_approaches(&w->batch->group[g]) + dig->added.noise;
+            return fitted->noise[g] - fitted->approaches[g] + dig->added.noise;
         }
     }
     return dig_response_surface_noise(w->surface, trajectory, fitted->number) + dig->added.noise;

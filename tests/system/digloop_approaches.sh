@@ -34,7 +34,7 @@ for kind in force machine; do
         role=fit
     done
     "$BIN/digloop" trace tables/product.sqlite "$work/$kind" --json "$work/$kind.json" -q 2>"$work/err" || cat "$work/err"
-    echo "      $kind: $(grep -o '"verdict": [^]]*]' "$work/$kind.json"), friction $(told friction), rolling $(told rolling), density $(told density_kgpm3)"
+    echo "      $kind: $(grep -oE '"(verdict": [^]]*\]|p_complete": [^,]*)' "$work/$kind.json" | tr '\n' ' ') friction $(told friction), rolling $(told rolling), density $(told density_kgpm3)"
     check "a fast dig has no effect of the list ($kind)" grep -qE '"verdict": \["(none|unlisted)"\]' "$work/$kind.json"
     check "and its density is told" within "$(told density_kgpm3 | cut -d ' ' -f 1)" 2070 2530
 done
