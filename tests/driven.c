@@ -214,18 +214,17 @@ void driven_dig(struct driven *const b, struct drive drive)
 }
 
 // The family's moment as the paper smooths it: the mean over +-0.16 s of rig time, here by brute
-// force, over the part of the window the dig covers. A dig driven slower covers less path
-// meanwhile.
+// force, over the part of the window the dig covers.
 static double smoothed_Nm(const enum made_trajectory which, const double progress,
-                          const double stretch, const double until)
+                          const double until)
 {
     enum { POINTS = 200 };
     const struct dig_trajectory t       = made_trajectory(which);
     const double                whole_m = dig_trajectory_path_m(&t, rig_tooth_m, 1e3);
     const double                at_s    = dig_trajectory_time_s(&t, rig_tooth_m, progress);
-    const double                from_s  = fmax(at_s - DIG_SMOOTH_HALF_s / stretch, 0.0);
+    const double                from_s  = fmax(at_s - DIG_SMOOTH_HALF_s, 0.0);
     const double                end_s   = dig_trajectory_time_s(&t, rig_tooth_m, until);
-    const double                to_s    = fmin(at_s + DIG_SMOOTH_HALF_s / stretch, end_s);
+    const double                to_s    = fmin(at_s + DIG_SMOOTH_HALF_s, end_s);
     double                      sum_Nm  = 0.0;
     for (int i = 0; i < POINTS; i++) {
         const double s = from_s + (to_s - from_s) * (i + 0.5) / POINTS;
@@ -235,14 +234,14 @@ static double smoothed_Nm(const enum made_trajectory which, const double progres
     return sum_Nm / POINTS;
 }
 
-double driven_error(const struct driven *const b, const double stretch, const double until)
+double driven_error(const struct driven *const b, const double until)
 {
     double miss = 0.0, whole = 0.0;
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = k / 255.0;
         if (at >= b->observation.first && at <= b->observation.last) {
             const double truth =
-                smoothed_Nm((enum made_trajectory)b->observation.trajectory, at, stretch, until);
+                smoothed_Nm((enum made_trajectory)b->observation.trajectory, at, until);
             miss += pow(b->observation.moment_Nm[k] - truth, 2.0);
             whole += truth * truth;
         }

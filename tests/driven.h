@@ -71,7 +71,7 @@ void driven_tick(struct driven *driven, struct dig_pose pose, double up_m, doubl
 void driven_dig(struct driven *driven, struct drive drive);
 
 /// Relative distance of the observation from the moment driven, as the paper smooths it, over the
-/// points measured. A dig driven slower, or broken off at until, is smoothed over less path.
-double driven_error(const struct driven *driven, double stretch, double until);
+/// points measured, up to until. The pace of the dig plays no part.
+double driven_error(const struct driven *driven, double until);
 
 #endif // DIG_TESTS_DRIVEN_H

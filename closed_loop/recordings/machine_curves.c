@@ -114,7 +114,7 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
     const struct dig_route route = dig_route_make(&set->trajectory[dig->trajectory], set->tooth_m);
     return of > 0 && (double)told >= enough_share * (double)of &&
            dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m,
-                              set->smooth_half_s / dig->pace, observation) == DIG_OK;
+                              set->smooth_half_s, observation) == DIG_OK;
 }
 
 static size_t beside(const struct dig_machine_dig *const dig, const size_t at, const double by_s)

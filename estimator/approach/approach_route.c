@@ -40,8 +40,11 @@ struct dig_route dig_approach_route_deep(const struct dig_curve_set *const set,
     const struct dig_path_point by    = dig_path_point_sub(plain.corner[1], route.corner[1]);
     route.turn_least_m                = plain.turn_least_m;
     route.turn_most_m                 = plain.turn_most_m;
+    // A trajectory goes deeper in the same time; a dig goes down at its own pace, however deep.
+    const double longer_s = plain.at_s[1] * (route.at_m[1] / plain.at_m[1] - 1.0);
     for (size_t i = 0; i < route.corners; i++) {
         route.corner[i] = dig_path_point_add_scaled(route.corner[i], 1.0, by);
+        route.at_s[i] += i > 0 ? longer_s : 0.0;
     }
     return route;
 }

@@ -13,6 +13,7 @@ struct dig_route dig_route_make(const struct dig_trajectory *const trajectory, c
         const struct dig_pose pose = dig_trajectory_pose(trajectory, time_s);
         route.corner[i] = (struct dig_path_point){ pose.x_m, pose.z_m, tooth_m * pose.theta_rad };
         route.at_m[i]   = dig_trajectory_path_m(trajectory, tooth_m, time_s);
+        route.at_s[i]   = time_s;
         time_s += i < trajectory->phases ? trajectory->phase[i].duration_s : 0.0;
     }
     return route;
@@ -68,7 +69,13 @@ struct dig_projection dig_route_project(const struct dig_route *const route, con
     return best;
 }
 
-struct dig_path_point dig_route_point(const struct dig_route *const route, const double progress)
+// A leg, and the share of it.
+struct place {
+    size_t leg;
+    double share;
+};
+
+static struct place place_of(const struct dig_route *const route, const double progress)
 {
     assert(route != NULL && route->corners >= 2);
     const double at_m = progress * route->at_m[route->corners - 1];
@@ -76,8 +83,20 @@ struct dig_path_point dig_route_point(const struct dig_route *const route, const
     while (i + 2 < route->corners && route->at_m[i + 1] <= at_m) {
         i++;
     }
-    const double                length_m = route->at_m[i + 1] - route->at_m[i];
-    const double                f   = length_m > 0.0 ? (at_m - route->at_m[i]) / length_m : 0.0;
-    const struct dig_path_point leg = dig_path_point_sub(route->corner[i + 1], route->corner[i]);
-    return dig_path_point_add_scaled(route->corner[i], f, leg);
+    const double length_m = route->at_m[i + 1] - route->at_m[i];
+    return (struct place){ i, length_m > 0.0 ? (at_m - route->at_m[i]) / length_m : 0.0 };
+}
+
+struct dig_path_point dig_route_point(const struct dig_route *const route, const double progress)
+{
+    const struct place          at = place_of(route, progress);
+    const struct dig_path_point leg =
+        dig_path_point_sub(route->corner[at.leg + 1], route->corner[at.leg]);
+    return dig_path_point_add_scaled(route->corner[at.leg], at.share, leg);
+}
+
+double dig_route_time_s(const struct dig_route *const route, const double progress)
+{
+    const struct place at = place_of(route, progress);
+    return route->at_s[at.leg] + at.share * (route->at_s[at.leg + 1] - route->at_s[at.leg]);
 }

@@ -40,6 +40,7 @@ struct dig_route {
     size_t                corners;
     struct dig_path_point corner[DIG_PHASES_MAX + 1];
     double                at_m[DIG_PHASES_MAX + 1]; // path length up to each corner
+    double                at_s[DIG_PHASES_MAX + 1]; // when the trajectory is there
     double                turn_least_m, turn_most_m;
 };
 
@@ -53,8 +54,9 @@ struct dig_projection {
     struct dig_path_point tangent, off;
 };
 
-/// The point of the route at a progress. O(corners).
+/// The point of the route at a progress, and when the trajectory is there. O(corners).
 struct dig_path_point dig_route_point(const struct dig_route *route, double progress);
+double                dig_route_time_s(const struct dig_route *route, double progress);
 
 /// Projects a point on the route between progress from and to. The first leg is extended backwards
 /// beyond the start (progress stays 0): approaching along it is no distance. O(corners).

@@ -86,17 +86,6 @@ static void sort_by_time(const size_t count, struct dig_window_sample sample[])
     }
 }
 
-// In the order of time.
-static void settle(struct dig_window *const window)
-{
-    if (window->stride > 1) {
-        sort_by_time(window->count, window->sample);
-    }
-    for (size_t i = 0; i < window->count; i++) {
-        window->time_s[i] = window->sample[i].time_s;
-    }
-}
-
 // A range of samples.
 struct range {
     size_t first, end;
@@ -131,30 +120,36 @@ static struct range follow(struct dig_window *const window, const struct dig_rou
     return range;
 }
 
+// When the table's dig was where each sample was. Samples without progress share the way to the
+// next step forward: noise of the angles hides steps, and all samples average its noise.
+static void place_in_time(struct dig_window *const window, const struct range range,
+                          const struct dig_route *const route)
+{
+    size_t step = range.first;
+    for (size_t i = range.first; i < range.end; i++) {
+        window->table_s[i] = dig_route_time_s(route, window->progress[i]);
+        if (window->progress[i] > window->progress[step]) {
+            const double by_s = (window->table_s[i] - window->table_s[step]) / (double)(i - step);
+            for (size_t k = step + 1; k < i; k++) {
+                window->table_s[k] = window->table_s[step] + by_s * (double)(k - step);
+            }
+            step = i;
+        }
+    }
+}
+
 // The progress observed: of a dig in progress only as far as samples on both sides smooth it.
 static double observed_until(const struct dig_window *const window, const struct range range,
                              const double half_s)
 {
     size_t i = range.end - 1;
     if (window->in_progress && window->progress[i] < 1.0) {
-        const double until_s = window->time_s[i] - half_s;
-        while (i > range.first && window->time_s[i] > until_s) {
+        const double until_s = window->table_s[i] - half_s;
+        while (i > range.first && window->table_s[i] > until_s) {
             i--;
         }
     }
     return window->progress[i];
-}
-
-// Number of samples of the range within half_s of sample i, at least 1: white noise averages over
-// these.
-static double samples_within(const struct dig_window *const window, const struct range range,
-                             const size_t i, const double half_s)
-{
-    const double span_s = window->time_s[range.end - 1] - window->time_s[range.first];
-    const double per_s  = (double)(range.end - range.first - 1) / span_s;
-    const double from_s = fmax(window->time_s[i] - half_s, window->time_s[range.first]);
-    const double to_s   = fmin(window->time_s[i] + half_s, window->time_s[range.end - 1]);
-    return fmax((to_s - from_s) * per_s, 1.0);
 }
 
 double dig_window_hole_s(const double half_s)
@@ -168,7 +163,7 @@ static bool has_hole(const struct dig_window *const window, const struct range r
 {
     const double longest_s = dig_window_hole_s(half_s);
     for (size_t i = range.first + 1; i < range.end; i++) {
-        const double step_s = window->time_s[i] - window->time_s[i - 1];
+        const double step_s = window->sample[i].time_s - window->sample[i - 1].time_s;
         if (step_s > longest_s * (double)window->stride) {
             return true;
         }
@@ -205,13 +200,35 @@ static size_t find_spots(const struct dig_window *const window, const struct ran
     return points;
 }
 
-// A sample's sigma after smoothing: white noise averages, the slow part does not.
-static double smoothed_sigma(const struct dig_window *const window, const struct range range,
-                             const size_t i, const double half_s, const double sigma,
-                             const double slow)
+// What smoothing at sample i leaves of the variance of white noise: the squares of the weights that
+// dig_curve_smooth() gives the samples.
+static double noise_left(const struct dig_window *const window, const struct range range,
+                         const size_t i, const double half_s)
 {
-    const double fast = fmax(sigma * sigma - slow * slow, 0.0);
-    return sqrt(slow * slow + fast / samples_within(window, range, i, half_s));
+    const double *const at_s   = window->table_s;
+    const double        from_s = fmax(at_s[i] - half_s, at_s[range.first]);
+    const double        to_s   = fmin(at_s[i] + half_s, at_s[range.end - 1]);
+    size_t              k      = i;
+    double              left   = 0.0;
+    if (!(to_s > from_s)) {
+        return 1.0;
+    }
+    while (k > range.first && at_s[k] > from_s) {
+        k--;
+    }
+    for (; k < range.end && at_s[k] <= to_s; k++) {
+        const double before_s = k > range.first ? fmax(at_s[k - 1], from_s) : from_s;
+        const double behind_s = k + 1 < range.end ? fmin(at_s[k + 1], to_s) : to_s;
+        const double weight   = 0.5 * fmax(behind_s - before_s, 0.0) / (to_s - from_s);
+        left += weight * weight;
+    }
+    return fmin(left, 1.0);
+}
+
+// A sample's sigma after smoothing: white noise averages, the slow part does not.
+static double smoothed_sigma(const double left, const double sigma, const double slow)
+{
+    return sqrt(slow * slow + left * fmax(sigma * sigma - slow * slow, 0.0));
 }
 
 // One channel of a sample: the moment, then the forces.
@@ -237,7 +254,7 @@ static void read_channel(struct dig_window *const window, const struct range ran
     for (size_t i = range.first; i < range.end; i++) {
         window->value[i] = reading_of(&window->sample[i], channel).value;
     }
-    dig_curve_smooth(range.end - range.first, &window->time_s[range.first],
+    dig_curve_smooth(range.end - range.first, &window->table_s[range.first],
                      &window->value[range.first], half_s, &window->smooth[range.first]);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const size_t i = spot[k].sample;
@@ -247,7 +264,7 @@ static void read_channel(struct dig_window *const window, const struct range ran
             const struct reading at = reading_of(&window->sample[i], channel);
             out[k] =
                 window->smooth[i] + spot[k].share * (window->smooth[i + 1] - window->smooth[i]);
-            sigma[k] = smoothed_sigma(window, range, i, half_s, at.sigma, at.slow);
+            sigma[k] = smoothed_sigma(noise_left(window, range, i, half_s), at.sigma, at.slow);
         }
     }
 }
@@ -268,11 +285,14 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
 {
     assert(window != NULL && route != NULL && track != NULL && observation != NULL);
 
-    settle(window);
+    if (window->stride > 1) {
+        sort_by_time(window->count, window->sample);
+    }
     const struct range range = follow(window, route, track, limit_m);
     if (range.end < range.first + 3 || has_hole(window, range, half_s)) {
         return DIG_ENOMATCH;
     }
+    place_in_time(window, range, route);
     const double first = window->progress[range.first];
     const double last  = observed_until(window, range, half_s);
     struct spot  spot[DIG_CURVE_POINTS];

@@ -39,9 +39,9 @@ struct dig_window {
     bool                     in_progress;     // in progress: the last half_s cannot be smoothed yet
     struct dig_window_sample sample[DIG_WINDOW_MAX];
     // filled by dig_window_observe()
-    double time_s[DIG_WINDOW_MAX];
-    double value[DIG_WINDOW_MAX]; // of one channel after the other
     double progress[DIG_WINDOW_MAX];
+    double table_s[DIG_WINDOW_MAX]; // when the table's dig was there
+    double value[DIG_WINDOW_MAX];   // of one channel after the other
     double smooth[DIG_WINDOW_MAX];
 };
 
@@ -56,13 +56,13 @@ void dig_window_close(struct dig_window *window);
 /// A gap between samples longer than this, rig time, is a hole.
 double dig_window_hole_s(double half_s);
 
-/// Observes the dig along the route at the track's shift. Samples are smoothed over +-half_s of rig
-/// time and evaluated at DIG_CURVE_POINTS of progress, each where the furthest progress first
-/// reached it: a pause or a step back has no effect. A sample farther than limit_m from the route
-/// does not advance progress. sigma: white noise averages over the smoothing, the slow part does
-/// not. Forces are observed where all samples have them. Aborted: the dig left the route by more
-/// than half of limit_m. A dig in progress is observed up to half_s before its newest sample,
-/// without an ending.
+/// Observes the dig along the route at the track's shift, at DIG_CURVE_POINTS of progress, each
+/// where the furthest progress first reached it: a pause or a step back has no effect. Values are
+/// smoothed over the path that the table's dig makes in +-half_s, as its curves are, whatever the
+/// dig's own pace. A sample farther than limit_m from the route does not advance progress. sigma:
+/// white noise averages over the smoothing, the slow part does not. Forces are observed where all
+/// samples have them. Aborted: the dig left the route by more than half of limit_m. A dig in
+/// progress is observed as far as it can be smoothed, without an ending.
 ///
 /// DIG_ENOMATCH: fewer than two points of the grid were reached, or a gap is longer than half_s of
 /// rig time, which is not interpolated. Uses the window's arrays; O(samples * corners).

@@ -181,7 +181,7 @@ static void whatever_comes_in_only_numbers_go_out(void **state)
     b->time_s = 1e-9 * (double)sample.time_ns;
     driven_dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .seed = 5 });
     assert_int_equal(b->observations, 1);
-    assert_true(driven_error(b, 1.0, 1.0) < 0.04);
+    assert_true(driven_error(b, 1.0) < 0.04);
     driven_destroy(b);
 }
 

@@ -37,34 +37,34 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
         double          error;
         enum dig_ending ending;
     } cases[] = {
-        { "simpleA", calm, 0.03, DIG_ENDING_WHOLE },
+        { "simpleA", calm, 0.002, DIG_ENDING_WHOLE },
         { "simpleB",
           { .which = MADE_SIMPLE_B, .stretch = 1, .until = 1, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_WHOLE },
         { "actual",
           { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_WHOLE },
         { "slow",
           { .which = MADE_SIMPLE_A, .stretch = 2.5, .until = 1, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_WHOLE },
         { "fast",
           { .which = MADE_ACTUAL, .stretch = 0.6, .until = 1, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_WHOLE },
         { "paused",
           { .which = MADE_SIMPLE_A, .stretch = 1, .pause_s = 8, .until = 1, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_WHOLE },
         { "stepped back",
           { .which = MADE_ACTUAL, .stretch = 1, .back_s = 0.2, .until = 1, .seed = 1 },
-          0.07,
-          DIG_ENDING_WHOLE }, // what was not felt while it went back is within the smoothing
+          0.002,
+          DIG_ENDING_WHOLE },
         { "sensors",
           { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
-          0.04,
+          0.02,
           DIG_ENDING_WHOLE },
         { "all of it",
           { .which   = MADE_ACTUAL,
@@ -74,15 +74,15 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
             .drop    = 0.2,
             .sensors = true,
             .seed    = 3 },
-          0.03,
+          0.01,
           DIG_ENDING_WHOLE },
         { "broken off",
           { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_ABORTED },
         { "aborted",
           { .which = MADE_ACTUAL, .stretch = 1, .until = 0.6, .seed = 1 },
-          0.03,
+          0.002,
           DIG_ENDING_ABORTED },
     };
     // simpleB and actual are one until the first turns on (40 % of its way is the shared turn) and
@@ -91,7 +91,7 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct driven *const b = driven_create(cases[i].drive.sensors);
         driven_dig(b, cases[i].drive);
-        const double error = driven_error(b, cases[i].drive.stretch, cases[i].drive.until);
+        const double error = driven_error(b, cases[i].drive.until);
         print_message("%-12s: error %.4f, off path %.2f mm, %.3f to %.3f, known from %.3f, "
                       "progress within %.3f\n",
                       cases[i].name, error, 1e3 * b->observation.off_path_m, b->observation.first,
@@ -154,9 +154,8 @@ static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
             assert_int_equal(o->ending, DIG_ENDING_OPEN);
             const struct dig_trajectory t       = made_trajectory(drive->which);
             const double                tooth_m = b->set->tooth_m, at = driven_look_at[s];
-            const double                smoothed_s =
-                dig_trajectory_time_s(&t, tooth_m, at) - DIG_SMOOTH_HALF_s / drive->stretch;
-            const double half = at - dig_trajectory_path_m(&t, tooth_m, smoothed_s) /
+            const double smoothed_s = dig_trajectory_time_s(&t, tooth_m, at) - DIG_SMOOTH_HALF_s;
+            const double half       = at - dig_trajectory_path_m(&t, tooth_m, smoothed_s) /
                                          dig_trajectory_path_m(&t, tooth_m, 1e3);
             print_message("case %zu, %.2f of the path: %.3f to %.3f, half a window is %.3f\n", i,
                           at, o->first, o->last, half);
@@ -182,7 +181,7 @@ static void a_dig_longer_than_the_window_is_still_observed(void **state)
     struct driven *const b = driven_create(false);
     driven_dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 24, .until = 1, .seed = 5 });
     assert_int_equal(b->observations, 1);
-    assert_true(driven_error(b, 24.0, 1.0) < 0.01);
+    assert_true(driven_error(b, 1.0) < 0.01);
     driven_destroy(b);
 }
 

@@ -292,6 +292,7 @@ static void a_whole_run_gives_the_recorded_curves_within_their_sigma(void **stat
                           sqrt(miss2 / whole2), sqrt(sigma2 / whole2));
             // Errors of alignment, half a per cent, come on top of the sensors'.
             assert_true(miss2 < 4.0 * sigma2 + 2.5e-5 * whole2);
+            assert_true(sigma2 < 4.0 * miss2 + 2.5e-5 * whole2);
             digs++;
         }
         assert_int_equal(digs, DIGS);

@@ -38,4 +38,6 @@ for kind in force machine; do
     check "a fast dig has no effect of the list ($kind)" grep -qE '"verdict": \["(none|unlisted)"\]' "$work/$kind.json"
     check "and its density is told" within "$(told density_kgpm3 | cut -d ' ' -f 1)" 2070 2530
 done
+identified=$("$BIN/digloop" identify tables/product.sqlite "$work/machine/simpleA.csv" --machine "$machine" --json | tr -d '\n' | sed -E 's/.*"mean": \{[^}]*"density_kgpm3": ([^}]*)\}.*/\1/')
+check "a machine's fast dig is identified, smoothed over as much path ($identified)" within "$identified" 2070 2530
 finish
