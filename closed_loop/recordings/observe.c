@@ -3,6 +3,7 @@
 #include "closed_loop/recordings/alignment.h"
 #include "core/units.h"
 #include "estimator/approach/approach_fit.h"
+#include "estimator/approach/approach_response.h"
 #include "estimator/approach/approach_route.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/approaches.h"
@@ -23,7 +24,7 @@ static const double turn_share = 0.1;
 // The recording's columns that matter, as plain arrays over its rows.
 struct columns {
     size_t  rows;
-    double *t_s;
+    double *t_s;      // its own, then when the table's dig was there
     double *progress; // path travelled as a fraction of the trajectory's
     // Of one channel, over the rows that have it, and one more at either end.
     double *held_t_s;
@@ -89,7 +90,8 @@ static size_t hold_channel(const struct dig_recording *const recording,
     return held;
 }
 
-// The longest time that none of the held rows tells of, from the recording's first row to its last.
+// The longest stretch that none of the held rows tells of, from the recording's first row to its
+// last, in time of the table's dig.
 static double longest_gap_s(const struct columns *const c, const size_t held)
 {
     double gap_s = 0.0;
@@ -101,10 +103,9 @@ static double longest_gap_s(const struct columns *const c, const size_t held)
     return gap_s;
 }
 
-// What the recording lacks of the trajectory: seconds of its own pace before and after it, and the
+// What the recording lacks of the trajectory: time of the table's dig before and after it, and the
 // progress between which smoothed values are those of a whole dig.
 struct ends {
-    double half_s; // of the smoothing: of as much of the path as the table's is
     double before_s, after_s;
     double first, last;
 };
@@ -130,16 +131,16 @@ static size_t extend(const struct ends *const ends, const struct columns *const 
 }
 
 // Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when rows
-// lack it for longer than the smoothing reaches to one side.
+// lack it over more of the path than the smoothing reaches to one side.
 static bool read_channel(const struct dig_recording *const recording, const struct columns *const c,
-                         const struct ends *const ends, const enum dig_channel channel,
-                         double value[DIG_CURVE_POINTS])
+                         const struct ends *const ends, const double half_s,
+                         const enum dig_channel channel, double value[DIG_CURVE_POINTS])
 {
     size_t     held = hold_channel(recording, c, channel);
-    const bool told = held == c->rows || (held >= 2 && longest_gap_s(c, held) <= ends->half_s);
+    const bool told = held == c->rows || (held >= 2 && longest_gap_s(c, held) <= half_s);
     if (told) {
         held = extend(ends, c, held);
-        dig_curve_smooth(held, c->held_t_s, c->raw, ends->half_s, c->smooth);
+        dig_curve_smooth(held, c->held_t_s, c->raw, half_s, c->smooth);
     }
     struct dig_alignment_place at = { .row = 0 };
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -237,16 +238,20 @@ static double pace_of(const struct dig_curve_set *const set, const size_t trajec
            (read_off(c, c->progress, c->t_s, to) - read_off(c, c->progress, c->t_s, from));
 }
 
-static struct ends ends_of(const struct dig_curve_set *const set, const size_t trajectory,
-                           const struct columns *const            c,
-                           const struct dig_alignment_part *const part, const double pace)
+// Puts every row at the time when the table's dig was where it is: what is smoothed then is as much
+// of the path as the table's, whatever the pace.
+static void place_in_time(const struct dig_trajectory *const t, const double tooth_m,
+                          const struct columns *const c)
 {
-    const struct dig_trajectory *const t      = &set->trajectory[trajectory];
-    const double                       half_s = set->smooth_half_s / pace;
-    struct ends                        ends   = { .half_s = half_s, .last = 1.0 };
-    ends.before_s = dig_trajectory_time_s(t, set->tooth_m, part->from) / pace;
-    ends.after_s =
-        (dig_trajectory_duration_s(t) - dig_trajectory_time_s(t, set->tooth_m, part->to)) / pace;
+    for (size_t i = 0; i < c->rows; i++) {
+        c->t_s[i] = dig_trajectory_time_s(t, tooth_m, fmin(fmax(c->progress[i], 0.0), 1.0));
+    }
+}
+
+static struct ends ends_of(const struct dig_trajectory *const t, const double half_s,
+                           const struct columns *const c)
+{
+    struct ends ends = { c->t_s[0], dig_trajectory_duration_s(t) - c->t_s[c->rows - 1], 0.0, 1.0 };
     if (ends.before_s > held_share * half_s) {
         ends.first = read_off(c, c->t_s, c->progress, c->t_s[0] + half_s);
     }
@@ -280,18 +285,23 @@ static enum dig_status observe(const struct dig_curve_set *const set,
     const struct columns       along = along_trajectory(c);
     const struct dig_recording rows  = { along.rows, recording->row + (along.t_s - c->t_s) };
     o.pace                           = pace_of(set, (size_t)o.trajectory, &along, &part);
-    const struct ends ends           = ends_of(set, (size_t)o.trajectory, &along, &part, o.pace);
-    o.first                          = ends.first;
-    o.last                           = ends.last;
+
+    const double                half_s = set->smooth_half_s;
+    const struct dig_trajectory dug = dig_response_trajectory(set, (size_t)o.trajectory, &o.made);
+    place_in_time(&dug, set->tooth_m, &along);
+    const struct ends ends = ends_of(&dug, half_s, &along);
+    o.first                = ends.first;
+    o.last                 = ends.last;
     for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
         o.measured[channel] =
-            read_channel(&rows, &along, &ends, (enum dig_channel)channel, o.value[channel]);
+            read_channel(&rows, &along, &ends, half_s, (enum dig_channel)channel, o.value[channel]);
     }
     if (!o.measured[DIG_CHANNEL_MY_Nm]) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "My_Nm is missing for more than %.2f s, expected the moment of the "
-                             "whole dig",
-                             ends.half_s);
+        return dig_error_set(
+            error, DIG_EINVAL,
+            "My_Nm is missing for longer than %.2f s at the table's pace, expected "
+            "the moment of the whole dig",
+            half_s);
     }
     *observed = o;
     return DIG_OK;

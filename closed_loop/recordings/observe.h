@@ -47,9 +47,9 @@ DIG_MUST_CHECK enum dig_status dig_observe_as_dug(const struct dig_curve_set *se
                                                   struct dig_error           *error);
 
 /// Finds the trajectory the recording followed, at its own pace and at least six tenths of it, and
-/// samples the smoothed moment (+-set->smooth_half_s over the pace) at DIG_CURVE_POINTS
-/// of its path progress. The recording must be of the table's size (rig scale); where it stands in
-/// space does not matter.
+/// samples the moment, smoothed over the path that the table's dig makes in +-set->smooth_half_s,
+/// at DIG_CURVE_POINTS of its path progress. The recording must be of the table's size (rig scale);
+/// where it stands in space does not matter.
 ///
 /// DIG_ENOMATCH: no trajectory of the set within DIG_OBSERVE_PATH_LIMIT; *error names the nearest
 /// and its distance. DIG_EINVAL: a recording that does not move. DIG_ENOMEM. O(rows).

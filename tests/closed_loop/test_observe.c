@@ -292,7 +292,9 @@ static void a_long_gap_is_not_measured_and_of_the_moment_refused(void **state)
         o.pace = 42.0;
         lose(&r, gaps[g][0], gaps[g][1], true);
         assert_int_equal(dig_observe_dig(&set, &r, &o, &e), DIG_EINVAL);
-        assert_non_null(strstr(e.text, "My_Nm is missing for more than 0.16 s, expected"));
+        assert_non_null(strstr(e.text,
+                               "My_Nm is missing for longer than 0.16 s at the table's pace, "
+                               "expected"));
         assert_close(o.pace, 42.0, 0.0);
         dig_recording_finish(&r);
     }
@@ -326,6 +328,30 @@ static void a_recording_cut_short_tells_what_it_has(void **state)
         assert_close(cut.value[0][k], told ? whole.value[0][k] : 0.0, told ? 0.008 : 0.0);
     }
     dig_recording_finish(&r);
+}
+
+// A bucket that waits in the soil, or goes now fast and now slowly, is as far on its path as one
+// that does not.
+static void rest_and_haste_within_the_dig_do_not_matter(void **state)
+{
+    (void)state;
+    const struct dig_curve_set set    = two_digs();
+    struct dig_recording       r      = drive(&set.trajectory[0], 1.0, quick_wave);
+    struct dig_recording       uneven = { r.rows + 600, calloc(r.rows + 600, sizeof *uneven.row) };
+    struct dig_observed        whole, seen;
+    double                     t_s = 0.0;
+    for (size_t i = 0; i < uneven.rows; i++) {
+        const size_t rested = i < r.rows / 2 ? 0 : (i < r.rows / 2 + 600 ? i - r.rows / 2 : 600);
+        uneven.row[i]       = r.row[i - rested];
+        uneven.row[i].t_s   = t_s += 0.005 * (1.0 + 0.8 * sin(0.02 * (double)i));
+    }
+    assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
+    assert_int_equal(dig_observe_dig(&set, &uneven, &seen, NULL), DIG_OK);
+    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        assert_close(seen.value[0][k], whole.value[0][k], 1e-9);
+    }
+    dig_recording_finish(&r);
+    dig_recording_finish(&uneven);
 }
 
 // A bucket that waits before and after its dig was not slower for it.
@@ -390,6 +416,7 @@ int main(void)
         cmocka_unit_test(short_gaps_are_bridged_by_what_lies_about_them),
         cmocka_unit_test(a_long_gap_is_not_measured_and_of_the_moment_refused),
         cmocka_unit_test(a_recording_cut_short_tells_what_it_has),
+        cmocka_unit_test(rest_and_haste_within_the_dig_do_not_matter),
         cmocka_unit_test(rest_before_and_after_is_no_pace),
         cmocka_unit_test(what_lies_beyond_the_trajectory_is_left_out),
     };

@@ -94,7 +94,7 @@ friction() { tr -d ' \n' <"$1" | sed -nE 's/.*"friction":\{"value":([-0-9.e+]+).
 check "lost samples hardly change the gravel" within "$(friction "$work/lossy.json")" \
     "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f - .01 }')" "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f + .01 }')"
 awk -F, -v OFS=, 'NR > 99 && NR < 140 { $9 = "" } 1' "$A$R" >"$work/lossy/lossy_b.csv"
-check "of a moment lost for longer nothing is made up" refuses "lossy/lossy_b.csv: My_Nm is missing for more than 0.16 s" -- "$work/lossy"
+check "of a moment lost for longer nothing is made up" refuses "lossy/lossy_b.csv: My_Nm is missing for longer than 0.16 s" -- "$work/lossy"
 
 # The rig at another size: the scene, and digs as they would be recorded there (Froude similarity).
 scaled_scene() { # LAMBDA
