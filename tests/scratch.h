@@ -1,5 +1,5 @@
 // A folder of its own for a test program's files: made before the tests, removed after them.
-//   cmocka_run_group_tests_name("x", tests, scratch_setup, scratch_teardown)
+//   TESTS_WITH(scratch_setup, scratch_teardown)
 
 #ifndef DIG_TESTS_SCRATCH_H
 #define DIG_TESTS_SCRATCH_H

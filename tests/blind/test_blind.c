@@ -24,9 +24,8 @@ static struct dig_machine machine(void)
     return m;
 }
 
-static void draws_are_even_and_normal_and_repeat(void **state)
+TEST(draws_are_even_and_normal_and_repeat)
 {
-    (void)state;
     struct blind_draw a        = blind_draw_init(1, 2);
     struct blind_draw b        = blind_draw_init(1, 2);
     struct blind_draw other    = blind_draw_init(1, 3);
@@ -52,9 +51,8 @@ static void draws_are_even_and_normal_and_repeat(void **state)
     }
 }
 
-static void pressures_undo_pushes(void **state)
+TEST(pressures_undo_pushes)
 {
-    (void)state;
     const struct dig_machine m = machine();
     for (double push = -80e3; push <= 80e3; push += 7e3) {
         double head = 0.0;
@@ -85,9 +83,8 @@ static struct dig_machine_recording rest(const struct dig_machine *const m,
 }
 
 // A mass at rest in the bucket: its weight times its horizontal distance, on every joint.
-static void a_heavy_bucket_needs_the_moment_of_its_weight(void **state)
+TEST(a_heavy_bucket_needs_the_moment_of_its_weight)
 {
-    (void)state;
     const struct dig_machine     m        = machine();
     const double                 angle[3] = { 0.3, -1.2, -0.5 };
     struct dig_machine_recording r        = rest(&m, angle);
@@ -112,9 +109,8 @@ static void a_heavy_bucket_needs_the_moment_of_its_weight(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void a_payload_is_not_there_before_the_first_dig(void **state)
+TEST(a_payload_is_not_there_before_the_first_dig)
 {
-    (void)state;
     const struct dig_machine m        = machine();
     const double             angle[3] = { 0.3, -1.2, -0.5 };
     struct blind_fault       f        = { BLIND_PAYLOAD, { 100.0, 0.5, 0.5, 0.5 } };
@@ -133,9 +129,8 @@ static void a_payload_is_not_there_before_the_first_dig(void **state)
     }
 }
 
-static void intervals_are_those_of_wilson(void **state)
+TEST(intervals_are_those_of_wilson)
 {
-    (void)state;
     // Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
     const struct blind_share a = blind_share_of(81, 263);
     assert_close(a.low, 0.2553, 5e-5);
@@ -182,9 +177,8 @@ static void put_set(struct blind_result *const r, const size_t n, const char *co
     }
 }
 
-static void answers_are_told_apart(void **state)
+TEST(answers_are_told_apart)
 {
-    (void)state;
     struct blind_result r = answered("wear", "wear", 0.9);
     assert_int_equal(blind_answer_of(&r), BLIND_RIGHT);
     r = answered("wear", "cohesion", 0.9);
@@ -208,9 +202,8 @@ static void answers_are_told_apart(void **state)
     assert_int_equal(blind_answer_of(&r), BLIND_EXTRA);
 }
 
-static void a_verdict_is_read_from_the_documented_json(void **state)
+TEST(a_verdict_is_read_from_the_documented_json)
 {
-    (void)state;
     struct blind_verdict v;
     struct dig_error     error = { "" };
     if (blind_verdict_read("tests/data/formats/trace.json", &v, &error) != DIG_OK) {
@@ -248,9 +241,8 @@ static const struct blind_criterion *criterion(const char *const begins)
 
 // Of gravel three numbers count, of an effect that was found its first parameter; of one that was
 // not found, neither.
-static void intervals_are_judged_number_by_number(void **state)
+TEST(intervals_are_judged_number_by_number)
 {
-    (void)state;
     struct blind_result r = answered("wear", "wear", 0.9);
     r.order.effect[0].how = BLIND_BY_GROUND;
     r.gravel              = (struct dig_gravel){ { 0.5, 0.5, 2500.0 } };
@@ -277,9 +269,8 @@ static void intervals_are_judged_number_by_number(void **state)
     assert_int_equal(blind_criterion_judge(criterion("  of its magnitude, our DEM"), 1, &r).n, 0);
 }
 
-static void the_pool_holds_whole_beds_of_known_gravel(void **state)
+TEST(the_pool_holds_whole_beds_of_known_gravel)
 {
-    (void)state;
     struct blind_pool pool  = { 0, NULL };
     struct blind_pool more  = { 0, NULL };
     struct dig_error  error = { "" };
@@ -311,20 +302,4 @@ static void the_pool_holds_whole_beds_of_known_gravel(void **state)
     }
     assert_true(ours > 3);
     blind_pool_finish(&pool);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(draws_are_even_and_normal_and_repeat),
-        cmocka_unit_test(pressures_undo_pushes),
-        cmocka_unit_test(a_heavy_bucket_needs_the_moment_of_its_weight),
-        cmocka_unit_test(a_payload_is_not_there_before_the_first_dig),
-        cmocka_unit_test(intervals_are_those_of_wilson),
-        cmocka_unit_test(answers_are_told_apart),
-        cmocka_unit_test(a_verdict_is_read_from_the_documented_json),
-        cmocka_unit_test(intervals_are_judged_number_by_number),
-        cmocka_unit_test(the_pool_holds_whole_beds_of_known_gravel),
-    };
-    return cmocka_run_group_tests_name("blind", tests, NULL, NULL);
 }

@@ -57,9 +57,8 @@ static const struct scatter clean = { 0.0, 0.0 };
 static const struct scatter real  = { 5e-5, 0.05 };
 
 // Added up step by step the noise alone would make this way five times as long.
-static void noise_of_the_path_makes_no_way(void **state)
+TEST(noise_of_the_path_makes_no_way)
 {
-    (void)state;
     const struct scatter *const noises[] = { &clean, &real };
     for (int n = 0; n < 2; n++) {
         struct dig_recording r        = drive(0.0, 2.6, 1000.0, noises[n]);
@@ -90,9 +89,8 @@ static void expect_part(const double from_s, const double to_s, const struct sca
     dig_recording_finish(&r);
 }
 
-static void what_a_recording_lacks_is_told_by_the_poses(void **state)
+TEST(what_a_recording_lacks_is_told_by_the_poses)
 {
-    (void)state;
     expect_part(0.0, 2.6, &clean, 1e-12);
     expect_part(0.0, 2.6, &real, 1e-12);
     expect_part(0.0, 2.4, &clean, 0.004);
@@ -102,9 +100,8 @@ static void what_a_recording_lacks_is_told_by_the_poses(void **state)
 }
 
 // A path that is no part of the trajectory's is compared with all of it.
-static void another_path_is_not_bent_to_fit(void **state)
+TEST(another_path_is_not_bent_to_fit)
 {
-    (void)state;
     struct dig_recording r = drive(0.0, 2.6, 200.0, &clean);
     for (size_t i = 0; i < r.rows; i++) {
         r.row[i].pin_z_m += 0.003 * sin(2.4 * r.row[i].t_s);
@@ -123,9 +120,8 @@ static void another_path_is_not_bent_to_fit(void **state)
 }
 
 // Of a turn beyond what the target allows the rest is distance.
-static void a_turned_bucket_is_told_within_the_range(void **state)
+TEST(a_turned_bucket_is_told_within_the_range)
 {
-    (void)state;
     static const struct dig_alignment_target target   = { &dug, TOOTH_m, -0.1, 0.1 };
     struct dig_recording                     r        = drive(0.0, 2.6, 200.0, &clean);
     double *const                            progress = calloc(r.rows, sizeof *progress);
@@ -144,9 +140,8 @@ static void a_turned_bucket_is_told_within_the_range(void **state)
 }
 
 // What is missing is told beside a turn, too.
-static void a_part_of_a_turned_dig_is_told(void **state)
+TEST(a_part_of_a_turned_dig_is_told)
 {
-    (void)state;
     static const struct dig_alignment_target target   = { &dug, TOOTH_m, -0.2, 0.2 };
     struct dig_recording                     r        = drive(0.15, 2.3, 200.0, &clean);
     double *const                            progress = calloc(r.rows, sizeof *progress);
@@ -160,16 +155,4 @@ static void a_part_of_a_turned_dig_is_told(void **state)
     assert_close(part.turned_rad, -0.1, 0.005);
     free(progress);
     dig_recording_finish(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noise_of_the_path_makes_no_way),
-        cmocka_unit_test(what_a_recording_lacks_is_told_by_the_poses),
-        cmocka_unit_test(another_path_is_not_bent_to_fit),
-        cmocka_unit_test(a_turned_bucket_is_told_within_the_range),
-        cmocka_unit_test(a_part_of_a_turned_dig_is_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,9 +21,8 @@ static int set_up(void **state)
 }
 
 // Behind the first leg all depths are at one place at one time.
-static void a_deeper_dig_adds_what_the_table_says(void **state)
+TEST_WITH(a_deeper_dig_adds_what_the_table_says, set_up, NULL)
 {
-    (void)state;
     const struct dig_curve_set *const set = &table.cube.set;
     struct dig_added                  added;
     for (size_t t = 0; t < 2; t++) {
@@ -49,9 +48,8 @@ static void a_deeper_dig_adds_what_the_table_says(void **state)
 }
 
 // Half as far as it was dug adds half as much, and a turned bucket follows the same path.
-static void a_turned_bucket_adds_what_the_table_says(void **state)
+TEST(a_turned_bucket_adds_what_the_table_says)
 {
-    (void)state;
     static const struct dig_approach  turned[] = { { 1.0, -0.2 }, { 1.0, 0.2 } };
     static const struct dig_approach  half     = { 1.0, 0.1 };
     const struct dig_curve_set *const set      = &table.cube.set;
@@ -72,9 +70,8 @@ static void a_turned_bucket_adds_what_the_table_says(void **state)
 }
 
 // 1 sigma of depths that are as likely between .8 and 1.2; the same for every gravel here.
-static void the_change_is_one_sigma_of_the_depths(void **state)
+TEST_WITH(the_change_is_one_sigma_of_the_depths, set_up, NULL)
 {
-    (void)state;
     const struct dig_curve_set *const set = &table.cube.set;
     for (size_t t = 0; t < 2; t++) {
         const struct dig_curve *const curve = &set->curve[2 * 3 + t];
@@ -99,9 +96,8 @@ static void the_change_is_one_sigma_of_the_depths(void **state)
     }
 }
 
-static void a_table_of_one_depth_has_none(void **state)
+TEST_WITH(a_table_of_one_depth_has_none, set_up, NULL)
 {
-    (void)state;
     double           change[DIG_FEATURES] = { 1.0 };
     struct dig_added added;
     table.cube.set.approaches = NULL;
@@ -110,15 +106,4 @@ static void a_table_of_one_depth_has_none(void **state)
     assert_int_equal(dig_approach_added(&table.cube.set, 0, &table.cube.gravel[0], &way[1], &added),
                      DIG_OK);
     assert_close(added.value[0][200], 0.0, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_deeper_dig_adds_what_the_table_says, set_up),
-        cmocka_unit_test(a_turned_bucket_adds_what_the_table_says),
-        cmocka_unit_test_setup(the_change_is_one_sigma_of_the_depths, set_up),
-        cmocka_unit_test_setup(a_table_of_one_depth_has_none, set_up),
-    };
-    return cmocka_run_group_tests_name("approach_change", tests, NULL, NULL);
 }

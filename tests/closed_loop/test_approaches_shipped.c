@@ -65,9 +65,8 @@ static void added_in(const struct dig_curve_set *const in, const size_t t,
     *noise = added.noise * variance_of(t);
 }
 
-static void others_tell_a_change_but_for_the_share(void **state)
+TEST(others_tell_a_change_but_for_the_share)
 {
-    (void)state;
     const struct dig_approach_set *const all      = set->approaches;
     const size_t                         n        = all->entries * all->trajectories;
     int *const                           packings = malloc(n * sizeof *packings);
@@ -120,8 +119,4 @@ static void others_tell_a_change_but_for_the_share(void **state)
     free(packings);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = { cmocka_unit_test(others_tell_a_change_but_for_the_share) };
-    return cmocka_run_group_tests_name("approaches_shipped", tests, setup, teardown);
-}
+TESTS_WITH(setup, teardown)

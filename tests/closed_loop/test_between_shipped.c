@@ -77,9 +77,8 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
     }
 }
 
-static void intervals_hold_between_the_grids_points(void **state)
+TEST(intervals_hold_between_the_grids_points)
 {
-    (void)state;
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
     static const double             middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
@@ -113,10 +112,4 @@ static void intervals_hold_between_the_grids_points(void **state)
     assert_true(log_likelihood > -39.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(intervals_hold_between_the_grids_points),
-    };
-    return cmocka_run_group_tests_name("between_shipped", tests, setup, teardown);
-}
+TESTS_WITH(setup, teardown)

@@ -3,9 +3,8 @@
 #include "tests/testlib.h"
 
 // Tabulated quantiles of chi square (any book of tables).
-static void tails_of_chi_square_are_those_of_the_tables(void **state)
+TEST(tails_of_chi_square_are_those_of_the_tables)
 {
-    (void)state;
     const struct {
         double freedom, x, tail;
     } known[] = { { 1, 3.8415, 0.05 },  { 1, 6.6349, 0.01 },   { 5, 15.0863, 0.01 },
@@ -18,9 +17,8 @@ static void tails_of_chi_square_are_those_of_the_tables(void **state)
     assert_close(dig_chance_gamma_tail(2.0, 4.0, 60.0), exp(-30.0), 1e-22); // closed form
 }
 
-static void draws_have_the_tail_that_is_claimed(void **state)
+TEST(draws_have_the_tail_that_is_claimed)
 {
-    (void)state;
     enum { DRAWS = 20000, FREEDOM = 4 };
     uint64_t seed  = 11;
     double   above = 0.0;
@@ -35,9 +33,8 @@ static void draws_have_the_tail_that_is_claimed(void **state)
     assert_close(above, 0.05, 5.0 * sqrt(0.05 * 0.95 / DRAWS));
 }
 
-static void every_index_comes_as_often(void **state)
+TEST(every_index_comes_as_often)
 {
-    (void)state;
     enum { DRAWS = 30000, PLACES = 6 };
     uint64_t seed          = 12;
     double   count[PLACES] = { 0.0 };
@@ -49,14 +46,4 @@ static void every_index_comes_as_often(void **state)
     for (size_t i = 0; i < PLACES; i++) {
         assert_close(count[i] / DRAWS, 1.0 / PLACES, 5.0 * sqrt(1.0 / PLACES / DRAWS));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tails_of_chi_square_are_those_of_the_tables),
-        cmocka_unit_test(draws_have_the_tail_that_is_claimed),
-        cmocka_unit_test(every_index_comes_as_often),
-    };
-    return cmocka_run_group_tests_name("chance", tests, NULL, NULL);
 }

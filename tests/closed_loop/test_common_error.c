@@ -46,9 +46,8 @@ static struct dig_common_error some_error(const struct dig_whitened_digs_group *
 
 // What is drawn has the covariance that is built: the squares of the mean of n digs, the even part
 // and the smooth one, over it are chi squared, in the mean and in their variance.
-static void what_is_drawn_has_the_covariance_that_is_built(void **state)
+TEST(what_is_drawn_has_the_covariance_that_is_built)
 {
-    (void)state;
     const struct dig_whitened_digs_group *const group = make_group();
     const struct dig_common_error               error = some_error(group);
     const double                                n     = (double)group->features;
@@ -72,9 +71,8 @@ static void what_is_drawn_has_the_covariance_that_is_built(void **state)
 
 // What a factor may be wrong by, all along the dig alike, is told by no number of digs: the squares
 // of ten times as much are near those of ten sigmas, however small the scatter is beside it.
-static void a_smooth_factor_is_as_uncertain_as_its_size(void **state)
+TEST(a_smooth_factor_is_as_uncertain_as_its_size)
 {
-    (void)state;
     const struct dig_whitened_digs_group *const group = make_group();
     struct dig_common_error                     error = { .even = 0.0 };
     double                                      ten[DIG_FEATURES];
@@ -90,9 +88,8 @@ static void a_smooth_factor_is_as_uncertain_as_its_size(void **state)
 }
 
 // A dig off by so many sigmas of a shift, and by nothing else, is as far off as that says.
-static void a_shift_is_as_uncertain_as_it_says(void **state)
+TEST(a_shift_is_as_uncertain_as_it_says)
 {
-    (void)state;
     const struct dig_whitened_digs_group *const group = make_group();
     struct dig_common_error                     error = { .even = 1e-4, .shift = { .shifts = 3 } };
     double                                      three[DIG_FEATURES];
@@ -106,9 +103,8 @@ static void a_shift_is_as_uncertain_as_it_says(void **state)
     assert_close(dig_common_error_squares(group, &error, y), 9.0, 1e-2);
 }
 
-static void without_parts_only_scatter_and_the_even_part_are_left(void **state)
+TEST(without_parts_only_scatter_and_the_even_part_are_left)
 {
-    (void)state;
     const struct dig_whitened_digs_group *const group           = make_group();
     struct dig_common_error                     error           = { .even = 0.1 };
     double                                      y[DIG_FEATURES] = { 0.0 };
@@ -119,13 +115,4 @@ static void without_parts_only_scatter_and_the_even_part_are_left(void **state)
     assert_close(error.noise, 0.1, 1e-12);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_drawn_has_the_covariance_that_is_built),
-        cmocka_unit_test(a_smooth_factor_is_as_uncertain_as_its_size),
-        cmocka_unit_test(a_shift_is_as_uncertain_as_it_says),
-        cmocka_unit_test(without_parts_only_scatter_and_the_even_part_are_left),
-    };
-    return cmocka_run_group_tests_name("common_error", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

@@ -14,9 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void points_within_the_band_are_counted_where_something_was_measured(void **state)
+TEST(points_within_the_band_are_counted_where_something_was_measured)
 {
-    (void)state;
     static struct dig_observation dig = { .first = 10.0 / 255.0, .last = 29.5 / 255.0 };
     static struct dig_curve       curve;
     struct dig_coverage           coverage = { .points = { 0 } };
@@ -96,9 +95,8 @@ static void judge(const struct dig_curve_set *const set, const char *const simpl
     }
 }
 
-static void the_90_percent_band_holds_85_to_95_on_digs_of_another_code(void **state)
+TEST(the_90_percent_band_holds_85_to_95_on_digs_of_another_code)
 {
-    (void)state;
     static const char *const files[]          = { "tests/data/reference/*__simpleA.csv",
                                                   "tests/data/liggghts_more/mu*__simpleA.csv" };
     struct dig_curve_set    *set              = NULL;
@@ -127,13 +125,4 @@ static void the_90_percent_band_holds_85_to_95_on_digs_of_another_code(void **st
     }
     assert_true(digs >= 26);
     dig_curve_set_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_within_the_band_are_counted_where_something_was_measured),
-        cmocka_unit_test(the_90_percent_band_holds_85_to_95_on_digs_of_another_code),
-    };
-    return cmocka_run_group_tests_name("coverage", tests, NULL, NULL);
 }

@@ -52,18 +52,16 @@ static double gain_of(const enum dig_effect_id effect)
     return gain;
 }
 
-static void what_is_there_predicts_the_digs_left_out(void **state)
+TEST(what_is_there_predicts_the_digs_left_out)
 {
-    (void)state;
     dig_with(0.8, 3);
     assert_true(gain_of(DIG_EFFECT_LAYERING) > 20.0);
 }
 
 // Fitted to digs without an effect, a trend explains their scatter and predicts none: over twelve
 // campaigns it takes nothing off what was left out.
-static void what_is_not_there_predicts_nothing(void **state)
+TEST(what_is_not_there_predicts_nothing)
 {
-    (void)state;
     double sum = 0.0;
     for (uint64_t seed = 1; seed <= 12; seed++) {
         dig_with(0.0, 100 + seed);
@@ -73,9 +71,8 @@ static void what_is_not_there_predicts_nothing(void **state)
 }
 
 // A trend needs four digs: of four none can be left out.
-static void what_cannot_be_fitted_to_the_others_counts_nothing(void **state)
+TEST(what_cannot_be_fitted_to_the_others_counts_nothing)
 {
-    (void)state;
     bool   take[DIGS] = { true, true, true, true };
     double place[DIG_AXES];
     dig_with(0.0, 5);
@@ -115,18 +112,16 @@ static void expect_the_others(const size_t lone)
     }
 }
 
-static void a_dig_left_out_leaves_the_others_as_they_are(void **state)
+TEST(a_dig_left_out_leaves_the_others_as_they_are)
 {
-    (void)state;
     expect_the_others(2);
     expect_the_others(0); // of the first trajectory: the second becomes the first
 }
 
 // What is open beside the soil is fitted to the others and told of the dig left out, so that the
 // gain is that of digs without it.
-static void what_is_open_is_told_of_the_dig_left_out(void **state)
+TEST(what_is_open_is_told_of_the_dig_left_out)
 {
-    (void)state;
     static struct dig_steps steps;
     const double            off[] = { -3.0 };
     dig_with(0.8, 3);
@@ -150,14 +145,4 @@ static void what_is_open_is_told_of_the_dig_left_out(void **state)
     assert_true(fabs(open / gain - 1.0) < 0.1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_there_predicts_the_digs_left_out),
-        cmocka_unit_test(what_is_not_there_predicts_nothing),
-        cmocka_unit_test(what_cannot_be_fitted_to_the_others_counts_nothing),
-        cmocka_unit_test(a_dig_left_out_leaves_the_others_as_they_are),
-        cmocka_unit_test(what_is_open_is_told_of_the_dig_left_out),
-    };
-    return cmocka_run_group_tests_name("confirm", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

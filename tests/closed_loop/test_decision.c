@@ -107,9 +107,8 @@ static struct dig_trace_curves *make_curves(const double size)
 
 // The formula against counting, from a change far below the scatter to one far above it, of a whole
 // dig and of one measured in part.
-static void the_chance_is_what_drawing_finds(void **state)
+TEST(the_chance_is_what_drawing_finds)
 {
-    (void)state;
     static const double size[] = { 0.1, 0.5, 1.0, 2.0, 4.0 };
     correlate_neighbours();
     for (size_t i = 0; i < sizeof size / sizeof size[0]; i++) {
@@ -124,18 +123,16 @@ static void the_chance_is_what_drawing_finds(void **state)
     }
 }
 
-static void no_change_is_as_good_as_any(void **state)
+TEST(no_change_is_as_good_as_any)
 {
-    (void)state;
     struct dig_trace_curves *const curves = make_curves(0.0);
     assert_close(dig_decision_chance_of_worse(world.set, drawn_from, 1, &dig, curves), 0.5, 0.0);
     free(curves);
 }
 
 // Two digs of one size and curves after that are nearer to the first and further from the second.
-static void what_counts_is_the_error_of_the_digs_fitted_to(void **state)
+TEST(what_counts_is_the_error_of_the_digs_fitted_to)
 {
-    (void)state;
     struct dig_measured *const     measured = calloc(2, sizeof *measured);
     struct dig_trace_curves *const curves   = calloc(2, sizeof *curves);
     assert_non_null(measured);
@@ -158,12 +155,4 @@ static void what_counts_is_the_error_of_the_digs_fitted_to(void **state)
     free(measured);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_chance_is_what_drawing_finds),
-        cmocka_unit_test(no_change_is_as_good_as_any),
-        cmocka_unit_test(what_counts_is_the_error_of_the_digs_fitted_to),
-    };
-    return cmocka_run_group_tests_name("worth", tests, make, clean);
-}
+TESTS_WITH(make, clean)

@@ -29,9 +29,8 @@ static void make(uint64_t *const seed, double a[N * N], double x[N], double ax[N
     }
 }
 
-static void a_system_is_solved(void **state)
+TEST(a_system_is_solved)
 {
-    (void)state;
     uint64_t seed = 3;
     for (int round = 0; round < 20; round++) {
         double a[N * N], x[N], b[N];
@@ -44,9 +43,8 @@ static void a_system_is_solved(void **state)
     }
 }
 
-static void multiplying_undoes_solving(void **state)
+TEST(multiplying_undoes_solving)
 {
-    (void)state;
     uint64_t seed = 4;
     double   a[N * N], x[N], b[N];
     make(&seed, a, x, b);
@@ -62,9 +60,8 @@ static void multiplying_undoes_solving(void **state)
     }
 }
 
-static void a_product_with_the_inverse_solves(void **state)
+TEST(a_product_with_the_inverse_solves)
 {
-    (void)state;
     uint64_t seed = 5;
     double   a[N * N], x[N], b[N], inverse[N * N];
     make(&seed, a, x, b);
@@ -80,33 +77,19 @@ static void a_product_with_the_inverse_solves(void **state)
     }
 }
 
-static void the_determinant_is_that_of_a_known_matrix(void **state)
+TEST(the_determinant_is_that_of_a_known_matrix)
 {
-    (void)state;
     double a[4] = { 4.0, 2.0, 2.0, 3.0 }; // 4 * 3 - 2 * 2
     assert_int_equal(dig_cholesky(2, a), DIG_OK);
     assert_close(dig_lower_log_det(2, a), log(8.0), 1e-12);
 }
 
-static void what_is_not_positive_definite_is_refused(void **state)
+TEST(what_is_not_positive_definite_is_refused)
 {
-    (void)state;
     double flat[4]     = { 1.0, 1.0, 1.0, 1.0 };
     double negative[1] = { -1.0 };
     double nan[1]      = { (double)NAN };
     assert_int_equal(dig_cholesky(2, flat), DIG_EINVAL);
     assert_int_equal(dig_cholesky(1, negative), DIG_EINVAL);
     assert_int_equal(dig_cholesky(1, nan), DIG_EINVAL);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_system_is_solved),
-        cmocka_unit_test(multiplying_undoes_solving),
-        cmocka_unit_test(a_product_with_the_inverse_solves),
-        cmocka_unit_test(the_determinant_is_that_of_a_known_matrix),
-        cmocka_unit_test(what_is_not_positive_definite_is_refused),
-    };
-    return cmocka_run_group_tests_name("dense", tests, NULL, NULL);
 }

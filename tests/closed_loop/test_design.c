@@ -42,9 +42,8 @@ static struct dig_design run(const struct bench *const b, const size_t draws)
 }
 
 // What is the same everywhere says nothing; what is dug twice as exactly says a bit more per axis.
-static void less_scatter_tells_more(void **state)
+TEST(less_scatter_tells_more)
 {
-    (void)state;
     struct bench            rough = make(0.2, 0.0);
     struct bench            fine  = make(0.05, 0.0);
     const struct dig_design a     = run(&rough, 200);
@@ -71,9 +70,8 @@ static void flatten(const struct bench *const b, const size_t t)
     assert_int_equal(dig_response_surface_fit(b->set, b->surface), DIG_OK);
 }
 
-static void a_dig_that_every_gravel_resists_alike_comes_last(void **state)
+TEST(a_dig_that_every_gravel_resists_alike_comes_last)
 {
-    (void)state;
     struct bench b = make(0.1, 0.0);
     flatten(&b, MADE_SIMPLE_A);
     const struct dig_design d = run(&b, 300);
@@ -92,9 +90,8 @@ static void a_dig_that_every_gravel_resists_alike_comes_last(void **state)
 }
 
 // Where the same dig stands under two names, neither is better, and the simulation must not say so.
-static void equal_digs_are_not_confirmed(void **state)
+TEST(equal_digs_are_not_confirmed)
 {
-    (void)state;
     struct bench b                   = make(0.15, 0.0);
     b.set->trajectory[MADE_SIMPLE_B] = b.set->trajectory[MADE_SIMPLE_A];
     for (size_t e = 0; e < b.set->entries; e++) {
@@ -111,9 +108,8 @@ static void equal_digs_are_not_confirmed(void **state)
 }
 
 // Friction and rolling friction act as one: whatever is dug, their difference stays unknown.
-static void what_no_dig_can_tell_stays_unknown(void **state)
+TEST(what_no_dig_can_tell_stays_unknown)
 {
-    (void)state;
     struct bench            one   = make(0.02, 1.0);
     struct bench            apart = make(0.02, 0.0);
     const struct dig_design a     = run(&one, 200);
@@ -132,9 +128,8 @@ static void what_no_dig_can_tell_stays_unknown(void **state)
 }
 
 // Where the scatter is small the simulated error is what Fisher's information allows, per axis.
-static void simulation_and_theory_agree_where_theory_is_exact(void **state)
+TEST(simulation_and_theory_agree_where_theory_is_exact)
 {
-    (void)state;
     struct bench            b = make(0.12, 0.0);
     const struct dig_design d = run(&b, 600);
     for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
@@ -149,9 +144,8 @@ static void simulation_and_theory_agree_where_theory_is_exact(void **state)
     drop(&b);
 }
 
-static void a_table_without_a_simple_dig_is_refused(void **state)
+TEST(a_table_without_a_simple_dig_is_refused)
 {
-    (void)state;
     struct bench b = make(0.1, 0.0);
     for (size_t t = 0; t < b.set->trajectories; t++) {
         b.set->trajectory[t].phases = DIG_DESIGN_SIMPLE_PHASES + 1;
@@ -163,9 +157,8 @@ static void a_table_without_a_simple_dig_is_refused(void **state)
     drop(&b);
 }
 
-static void the_reports_name_the_recommended_dig(void **state)
+TEST(the_reports_name_the_recommended_dig)
 {
-    (void)state;
     struct bench b = make(0.1, 0.0);
     flatten(&b, MADE_SIMPLE_A);
     const struct dig_design d    = run(&b, 100);
@@ -187,16 +180,4 @@ static void the_reports_name_the_recommended_dig(void **state)
     drop(&b);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(less_scatter_tells_more),
-        cmocka_unit_test(a_dig_that_every_gravel_resists_alike_comes_last),
-        cmocka_unit_test(equal_digs_are_not_confirmed),
-        cmocka_unit_test(what_no_dig_can_tell_stays_unknown),
-        cmocka_unit_test(simulation_and_theory_agree_where_theory_is_exact),
-        cmocka_unit_test(a_table_without_a_simple_dig_is_refused),
-        cmocka_unit_test(the_reports_name_the_recommended_dig),
-    };
-    return cmocka_run_group_tests_name("design", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -34,9 +34,8 @@ static struct dig_design design_of(const char *const path, const uint64_t seed,
     return design;
 }
 
-static void the_products_recommended_dig_identifies_better_than_simple_a(void **state)
+TEST(the_products_recommended_dig_identifies_better_than_simple_a)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         char                    best[DIG_NAME_SIZE];
         char                    reference[DIG_NAME_SIZE];
@@ -51,22 +50,12 @@ static void the_products_recommended_dig_identifies_better_than_simple_a(void **
 }
 
 // Of the rig no other simple dig tells more, and none is said to.
-static void the_rigs_simple_a_tells_most_already(void **state)
+TEST(the_rigs_simple_a_tells_most_already)
 {
-    (void)state;
     char                    best[DIG_NAME_SIZE];
     char                    reference[DIG_NAME_SIZE];
     const struct dig_design d = design_of("tables/reference_rig.sqlite", 1, best, reference);
     assert_string_equal(best, "simpleA");
     assert_string_equal(reference, "simpleA");
     assert_false(d.confirmed);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_products_recommended_dig_identifies_better_than_simple_a),
-        cmocka_unit_test(the_rigs_simple_a_tells_most_already),
-    };
-    return cmocka_run_group_tests_name("design_shipped", tests, NULL, NULL);
 }

@@ -91,9 +91,8 @@ static double u_of(const struct dig_effect_entry *const e)
     return (e->magnitude - soil->absent[e->effect]) / soil->scale[e->effect];
 }
 
-static void what_the_digs_leave_of_an_effect_is_as_large_as_expected(void **state)
+TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
 {
-    (void)state;
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
     double                          squares[DIG_EFFECTS] = { 0.0 }, of[DIG_EFFECTS] = { 0.0 };
@@ -130,9 +129,8 @@ static void what_the_digs_leave_of_an_effect_is_as_large_as_expected(void **stat
     assert_true(all / features > 0.5 && all / features < 1.2);
 }
 
-static void intervals_beside_an_effect_hold(void **state)
+TEST(intervals_beside_an_effect_hold)
 {
-    (void)state;
     static struct dig_whitened_digs batch;
     const double                    middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     const struct dig_hypothesis     plain                          = { .effects = 0 };
@@ -169,11 +167,4 @@ static void intervals_beside_an_effect_hold(void **state)
     assert_true((double)held[1] >= 0.7 * (double)all[1]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_the_digs_leave_of_an_effect_is_as_large_as_expected),
-        cmocka_unit_test(intervals_beside_an_effect_hold),
-    };
-    return cmocka_run_group_tests_name("effect_noise_shipped", tests, setup, teardown);
-}
+TESTS_WITH(setup, teardown)

@@ -70,18 +70,16 @@ static void add_wave(const double share)
     }
 }
 
-static void without_the_machine_there_is_no_size(void **state)
+TEST(without_the_machine_there_is_no_size)
 {
-    (void)state;
     add_wave(0.0);
     assert_close(dig_effect_size_of_machine(batch, &plain, measured), 0.0, 1e-12);
 }
 
 // Four digs of each trajectory: their mean scatters by half as much as one; what all share (.05 for
 // the DEM and the surface's) makes the floor 1 / .55 to 1 / .6 of that.
-static void what_no_gravel_does_counts_in_floors(void **state)
+TEST(what_no_gravel_does_counts_in_floors)
 {
-    (void)state;
     add_wave(2.0);
     const double size = dig_effect_size_of_machine(batch, &plain, measured);
     assert_in_range(1000.0 * size, 3000, 4000);
@@ -89,9 +87,8 @@ static void what_no_gravel_does_counts_in_floors(void **state)
     assert_close(dig_effect_size_of_machine(batch, &plain, measured), 2.0 * size, 0.05 * size);
 }
 
-static void what_another_gravel_does_is_no_size(void **state)
+TEST(what_another_gravel_does_is_no_size)
 {
-    (void)state;
     const struct dig_gravel other = { { 0.6, 0.55, 3000 } };
     double                  here[DIG_AXES];
     double                  there[DIG_AXES];
@@ -132,9 +129,8 @@ static void add_to_value(const bool known)
 
 // A wave of the digs that no gravel makes leaves the size it has by itself, whatever the digs'
 // scatter does; where it is known to be the machine's it leaves nothing more.
-static void what_no_gravel_explains_is_left(void **state)
+TEST(what_no_gravel_explains_is_left)
 {
-    (void)state;
     static struct dig_measured as_dug[DIGS];
     add_wave(0.0);
     memcpy(as_dug, measured, sizeof as_dug);
@@ -154,9 +150,8 @@ static void what_no_gravel_explains_is_left(void **state)
 }
 
 // Digs of a plain gravel leave, over their floor, no more on average than that.
-static void digs_of_a_plain_gravel_leave_nothing(void **state)
+TEST(digs_of_a_plain_gravel_leave_nothing)
 {
-    (void)state;
     enum { CAMPAIGNS = 30 };
     static struct dig_measured as_dug[DIGS];
     memcpy(as_dug, measured, sizeof as_dug);
@@ -189,9 +184,8 @@ static double size_of(const double layer, const double cohesion)
 }
 
 // The layer of the made world is a bump that no gravel has: it counts in proportion, and by itself.
-static void an_effect_of_the_soil_counts_by_itself(void **state)
+TEST(an_effect_of_the_soil_counts_by_itself)
 {
-    (void)state;
     const double size = size_of(0.05, 0.0);
     assert_close(size_of(0.0, 0.0), 0.0, 1e-12);
     assert_close(size_of(0.0, 1.0), 0.0, 1e-12);
@@ -200,24 +194,11 @@ static void an_effect_of_the_soil_counts_by_itself(void **state)
     assert_close(size_of(0.05, 1.0), size, 1e-9);
 }
 
-static void at_the_floor_the_odds_are_even(void **state)
+TEST(at_the_floor_the_odds_are_even)
 {
-    (void)state;
     assert_close(dig_effect_size_chance(1.0), 0.5, 1e-12);
     assert_true(dig_effect_size_chance(0.3) < 0.01);
     assert_true(dig_effect_size_chance(1.5) > 0.95);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_the_machine_there_is_no_size),
-        cmocka_unit_test(what_no_gravel_does_counts_in_floors),
-        cmocka_unit_test(what_another_gravel_does_is_no_size),
-        cmocka_unit_test(what_no_gravel_explains_is_left),
-        cmocka_unit_test(digs_of_a_plain_gravel_leave_nothing),
-        cmocka_unit_test(an_effect_of_the_soil_counts_by_itself),
-        cmocka_unit_test(at_the_floor_the_odds_are_even),
-    };
-    return cmocka_run_group_tests_name("consequence", tests, make, clean);
-}
+TESTS_WITH(make, clean)

@@ -2,9 +2,8 @@
 
 #include "tests/testlib.h"
 
-static void a_bin_is_the_mean_of_its_points(void **state)
+TEST(a_bin_is_the_mean_of_its_points)
 {
-    (void)state;
     double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -27,9 +26,8 @@ static void a_bin_is_the_mean_of_its_points(void **state)
     assert_int_equal(before, DIG_CURVE_POINTS);
 }
 
-static void a_dig_that_stops_early_lacks_its_last_bins(void **state)
+TEST(a_dig_that_stops_early_lacks_its_last_bins)
 {
-    (void)state;
     const bool both[DIG_FORCE_CHANNELS] = { true, false, true };
     bool       mask[DIG_FEATURES];
     dig_features_mask(both, 0.0, 0.55, mask);
@@ -40,9 +38,8 @@ static void a_dig_that_stops_early_lacks_its_last_bins(void **state)
     }
 }
 
-static void the_size_of_a_dig_is_its_rms(void **state)
+TEST(the_size_of_a_dig_is_its_rms)
 {
-    (void)state;
     double feature[DIG_FEATURES];
     bool   mask[DIG_FEATURES];
     for (size_t f = 0; f < DIG_FEATURES; f++) {
@@ -59,14 +56,4 @@ static void the_size_of_a_dig_is_its_rms(void **state)
     const double none[DIG_FEATURES] = { 0.0 };
     dig_features_amplitude(none, NULL, size);
     assert_true(size[0] > 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_bin_is_the_mean_of_its_points),
-        cmocka_unit_test(a_dig_that_stops_early_lacks_its_last_bins),
-        cmocka_unit_test(the_size_of_a_dig_is_its_rms),
-    };
-    return cmocka_run_group_tests_name("features", tests, NULL, NULL);
 }

@@ -112,27 +112,16 @@ static size_t found(const double strength)
 }
 
 // More than four of a hundred come once in three hundred times.
-static void chance_is_as_rare_as_the_level_says(void **state)
+TEST(chance_is_as_rare_as_the_level_says)
 {
-    (void)state;
     const size_t alarms = found(1.0);
     print_message("alarms: %zu of %d\n", alarms, CAMPAIGNS);
     assert_true(alarms <= 4);
 }
 
-static void what_is_four_times_as_strong_is_found(void **state)
+TEST(what_is_four_times_as_strong_is_found)
 {
-    (void)state;
     const size_t seen = found(4.0);
     print_message("found: %zu of %d\n", seen, CAMPAIGNS);
     assert_true(seen >= 80);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chance_is_as_rare_as_the_level_says),
-        cmocka_unit_test(what_is_four_times_as_strong_is_found),
-    };
-    return cmocka_run_group_tests_name("few packings", tests, NULL, NULL);
 }

@@ -69,9 +69,8 @@ static double made_variance(const struct dig_whitened_digs_group *const group,
 
 // The unit of a group is what its digs scatter by. Beside digs three times as large as any the
 // table holds, what the table does not know counts for so much less.
-static void the_tables_error_counts_for_less_beside_larger_digs(void **state)
+TEST(the_tables_error_counts_for_less_beside_larger_digs)
 {
-    (void)state;
     static const struct dig_hypothesis plain                         = { .effects = 0 };
     static const bool                  take[DIGS]                    = { true, true, true, true };
     const struct dig_gravel            gravel                        = { { 0.6, 0.55, 3900 } };
@@ -162,9 +161,8 @@ static bool is_lower_beside(const struct dig_whitened_digs *const b,
 
 // What a fit keeps of the numbers it has tried is theirs: it ends where the squares are least, and
 // tells those of that place.
-static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
+TEST(a_fit_ends_where_the_squares_it_tells_are_least)
 {
-    (void)state;
     static const struct dig_hypothesis all[] = {
         { .effects = 0 },
         { .effects = 1, .effect = { DIG_EFFECT_LAYERING } },
@@ -193,9 +191,8 @@ static void a_fit_ends_where_the_squares_it_tells_are_least(void **state)
 }
 
 // Of tables whose frictions begin near nothing and far from it.
-static void a_gravel_outside_the_grid_has_no_less_than_no_friction(void **state)
+TEST(a_gravel_outside_the_grid_has_no_less_than_no_friction)
 {
-    (void)state;
     static const double               first[]    = { 0.05, 0.1, 0.3, 0.5 };
     const struct dig_hypothesis       hypothesis = { .outside = true };
     const struct dig_curve_set *const made       = soil->surface->set;
@@ -221,12 +218,4 @@ static void a_gravel_outside_the_grid_has_no_less_than_no_friction(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_gravel_outside_the_grid_has_no_less_than_no_friction),
-        cmocka_unit_test(the_tables_error_counts_for_less_beside_larger_digs),
-        cmocka_unit_test(a_fit_ends_where_the_squares_it_tells_are_least),
-    };
-    return cmocka_run_group_tests_name("hypothesis", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

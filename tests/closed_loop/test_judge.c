@@ -22,9 +22,8 @@ static void make(struct dig_measured measured[DIGS], struct dig_trace_curves cur
     }
 }
 
-static void errors_pool_by_squares_over_the_digs_taken(void **state)
+TEST(errors_pool_by_squares_over_the_digs_taken)
 {
-    (void)state;
     const struct made_options options    = { .packings = 2 };
     struct dig_curve_set     *set        = made_table(&options);
     struct dig_measured      *m          = calloc(DIGS, sizeof *m);
@@ -44,9 +43,8 @@ static void errors_pool_by_squares_over_the_digs_taken(void **state)
     made_table_destroy(set);
 }
 
-static void one_dig_has_no_interval_and_none_no_error(void **state)
+TEST(one_dig_has_no_interval_and_none_no_error)
 {
-    (void)state;
     const struct made_options options    = { .packings = 2 };
     struct dig_curve_set     *set        = made_table(&options);
     struct dig_measured      *m          = calloc(DIGS, sizeof *m);
@@ -66,9 +64,8 @@ static void one_dig_has_no_interval_and_none_no_error(void **state)
 }
 
 // The made table's digs scatter by 0.1 of the curve; the noise of the prediction adds in squares.
-static void sigma_is_the_tables_own(void **state)
+TEST(sigma_is_the_tables_own)
 {
-    (void)state;
     const struct made_options    options = { .packings = 5, .relative_sd = 0.1 };
     struct dig_curve_set        *set     = made_table(&options);
     struct dig_response_surface *surface = malloc(sizeof *surface);
@@ -92,9 +89,8 @@ static void sigma_is_the_tables_own(void **state)
 }
 
 // A dig that its ground makes three times as strong in the moment and twice in the forces.
-static void sigma_grows_with_what_is_dug(void **state)
+TEST(sigma_grows_with_what_is_dug)
 {
-    (void)state;
     static const double times[DIG_FORCE_CHANNELS] = { 3.0, 2.0, 2.0 };
     double              plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double              dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
@@ -113,15 +109,4 @@ static void sigma_grows_with_what_is_dug(void **state)
             assert_close(sd[c][k], 0.1 * fabs(dug[c][k]), 1e-9);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_pool_by_squares_over_the_digs_taken),
-        cmocka_unit_test(one_dig_has_no_interval_and_none_no_error),
-        cmocka_unit_test(sigma_is_the_tables_own),
-        cmocka_unit_test(sigma_grows_with_what_is_dug),
-    };
-    return cmocka_run_group_tests_name("judge", tests, NULL, NULL);
 }

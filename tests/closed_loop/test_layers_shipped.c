@@ -94,9 +94,8 @@ static double ratio_of(const struct dig_gravel *const above, const struct dig_gr
     return exp(sum / (double)set->trajectories);
 }
 
-static void a_layer_is_told_by_its_top_and_its_resistance(void **state)
+TEST(a_layer_is_told_by_its_top_and_its_resistance)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
         const struct layer *const layer = &layers[i];
         struct dig_measured       dig[DIG_TRAJECTORY_MAX];
@@ -132,10 +131,4 @@ static void a_layer_is_told_by_its_top_and_its_resistance(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_layer_is_told_by_its_top_and_its_resistance),
-    };
-    return cmocka_run_group_tests_name("layers_shipped", tests, setup, teardown);
-}
+TESTS_WITH(setup, teardown)

@@ -22,9 +22,8 @@ static struct dig_levenberg problem(double memory[], const double most)
                                    .memory     = memory };
 }
 
-static void the_bottom_of_a_curved_valley_is_found(void **state)
+TEST(the_bottom_of_a_curved_valley_is_found)
 {
-    (void)state;
     double                     memory[8], squares = 0.0;
     double                     x[2] = { -1.2, 1.0 };
     const struct dig_levenberg p    = problem(memory, 2.0);
@@ -35,9 +34,8 @@ static void the_bottom_of_a_curved_valley_is_found(void **state)
 }
 
 // With x0 held below 0.5 the best is on the bound: r1 = 0.5, x1 = 0.25.
-static void a_bound_is_kept_and_the_rest_is_fitted(void **state)
+TEST(a_bound_is_kept_and_the_rest_is_fitted)
 {
-    (void)state;
     double                     memory[8], squares = 0.0;
     double                     x[2] = { -1.2, 1.0 };
     const struct dig_levenberg p    = problem(memory, 0.5);
@@ -47,9 +45,8 @@ static void a_bound_is_kept_and_the_rest_is_fitted(void **state)
     assert_close(squares, 0.25, 1e-3);
 }
 
-static void a_held_unknown_stays(void **state)
+TEST(a_held_unknown_stays)
 {
-    (void)state;
     double               memory[8], squares = 0.0;
     double               x[2] = { 0.7, -1.0 };
     struct dig_levenberg p    = problem(memory, 2.0);
@@ -57,14 +54,4 @@ static void a_held_unknown_stays(void **state)
     dig_levenberg_run(&p, x, &squares);
     assert_close(x[0], 0.7, 0.0);
     assert_close(x[1], 0.49, 1e-4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_bottom_of_a_curved_valley_is_found),
-        cmocka_unit_test(a_bound_is_kept_and_the_rest_is_fitted),
-        cmocka_unit_test(a_held_unknown_stays),
-    };
-    return cmocka_run_group_tests_name("levenberg", tests, NULL, NULL);
 }

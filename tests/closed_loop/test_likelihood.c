@@ -84,9 +84,8 @@ static double misfit_of(const struct dig_whitened_digs *const digs, const double
 }
 
 // Against the integral itself, over a grid of z, of the likelihood without steps.
-static void the_likelihood_is_the_integral_over_the_steps(void **state)
+TEST(the_likelihood_is_the_integral_over_the_steps)
 {
-    (void)state;
     static struct dig_whitened_digs shifted;
     const struct dig_gravel         gravel   = { { 0.6, 0.6, 2500 } };
     const double                    x[]      = { 0.1, -0.2, 0.15 };
@@ -127,9 +126,8 @@ static void the_likelihood_is_the_integral_over_the_steps(void **state)
 
 // Digs drawn with steps of the prior: what is fitted is off by what the covariance says. One of
 // them does what another gravel would do.
-static void fitted_steps_are_as_far_off_as_is_said(void **state)
+TEST(fitted_steps_are_as_far_off_as_is_said)
 {
-    (void)state;
     static struct dig_whitened_digs drawn;
     const struct dig_gravel         gravel     = { { 0.6, 0.6, 2500 } };
     uint64_t                        seed       = 8;
@@ -185,11 +183,4 @@ static int known_scatter_setup(void **state)
     return status;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_likelihood_is_the_integral_over_the_steps),
-        cmocka_unit_test(fitted_steps_are_as_far_off_as_is_said),
-    };
-    return cmocka_run_group_tests_name("likelihood", tests, known_scatter_setup, world_teardown);
-}
+TESTS_WITH(known_scatter_setup, world_teardown)

@@ -72,9 +72,8 @@ static bool tests_all(void)
     return getenv("DIG_TEST_ALL") != NULL;
 }
 
-static void the_file_that_is_right_is_called_right_in_every_line(void **state)
+TEST(the_file_that_is_right_is_called_right_in_every_line)
 {
-    (void)state;
     for (size_t m = 0; m < AIR_MACHINES; m += test_is_quick() ? AIR_MACHINES : 1) {
         for (uint64_t seed = 1; seed <= (tests_all() ? 5U : 1U); seed++) {
             struct dig_machine_air_check check = check_of(m, NULL, seed);
@@ -113,9 +112,8 @@ static bool is_tried(const size_t b, const size_t m)
     return m == b % AIR_MACHINES && (!one || (b - begin) == begin % 3);
 }
 
-static void what_is_broken_is_named_and_nothing_is_named_beside_it(void **state)
+TEST(what_is_broken_is_named_and_nothing_is_named_beside_it)
 {
-    (void)state;
     for (size_t b = 0; b < AIR_BREAKS; b++) {
         for (size_t m = 0; m < AIR_MACHINES; m++) {
             if (!is_tried(b, m)) {
@@ -133,9 +131,8 @@ static void what_is_broken_is_named_and_nothing_is_named_beside_it(void **state)
     }
 }
 
-static void two_breaks_at_once_are_both_named_with_their_values(void **state)
+TEST(two_breaks_at_once_are_both_named_with_their_values)
 {
-    (void)state;
     static const struct air_break turned = { .kind = AIR_TURNED, .of = DIG_JOINT_BOOM };
     const struct machine *const   m      = &machines[2];
     struct dig_machine_recording  r      = air_record(&m->machine, &m->track, &turned, 1);
@@ -158,9 +155,8 @@ static void two_breaks_at_once_are_both_named_with_their_values(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void a_joint_that_does_not_move_is_not_judged(void **state)
+TEST(a_joint_that_does_not_move_is_not_judged)
 {
-    (void)state;
     static const struct air_break still = { .kind = AIR_STILL, .of = DIG_JOINT_ARM };
     struct dig_machine_air_check  check = check_of(4, &still, 1);
     assert_int_equal(line(&check, DIG_CHECK_MOVES, DIG_JOINT_ARM)->verdict, DIG_CHECK_UNTOLD);
@@ -176,9 +172,8 @@ static void a_joint_that_does_not_move_is_not_judged(void **state)
     dig_machine_air_check_finish(&check);
 }
 
-static void of_a_machine_with_the_bucket_s_pressures_alone_the_bucket_is_judged(void **state)
+TEST(of_a_machine_with_the_bucket_s_pressures_alone_the_bucket_is_judged)
 {
-    (void)state;
     const struct machine *const  m = &machines[4];
     struct dig_machine_recording r = air_record(&m->machine, &m->track, NULL, 1);
     for (size_t i = 0; i < r.rows; i++) {
@@ -198,9 +193,8 @@ static void of_a_machine_with_the_bucket_s_pressures_alone_the_bucket_is_judged(
 }
 
 // What no line asks for: the ground, which the bucket leans on for five seconds.
-static void what_no_cause_explains_is_left_over(void **state)
+TEST(what_no_cause_explains_is_left_over)
 {
-    (void)state;
     const struct machine *const  m = &machines[4];
     struct dig_machine_recording r = air_record(&m->machine, &m->track, NULL, 1);
     for (size_t i = 0; i < r.rows; i++) {
@@ -221,9 +215,8 @@ static void what_no_cause_explains_is_left_over(void **state)
 }
 
 // A working dig, for which a person may take the wrong file.
-static void a_recording_with_a_dig_in_it_is_explained_by_nothing(void **state)
+TEST(a_recording_with_a_dig_in_it_is_explained_by_nothing)
 {
-    (void)state;
     const struct machine *const  m   = &machines[5];
     struct dig_rig_track_options how = dig_rig_track_options_default();
     struct dig_recording         dug;
@@ -248,9 +241,8 @@ static void a_recording_with_a_dig_in_it_is_explained_by_nothing(void **state)
 }
 
 // Allowances are 1 sigma of what may be off: half of each is no fault.
-static void what_is_within_its_tolerance_is_no_fault(void **state)
+TEST(what_is_within_its_tolerance_is_no_fault)
 {
-    (void)state;
     const struct machine *const  m    = &machines[5];
     struct dig_machine_recording r    = air_record(&m->machine, &m->track, NULL, 1);
     struct dig_machine           file = m->machine;
@@ -266,9 +258,8 @@ static void what_is_within_its_tolerance_is_no_fault(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void the_pushes_that_are_drawn_are_those_of_the_machine(void **state)
+TEST(the_pushes_that_are_drawn_are_those_of_the_machine)
 {
-    (void)state;
     static const struct air_break swapped = { .kind = AIR_SIDES, .of = DIG_JOINT_ARM };
     struct dig_machine_air_check  check   = check_of(4, &swapped, 1);
     double                        before = 0.0, after = 0.0, whole = 0.0;
@@ -284,9 +275,8 @@ static void the_pushes_that_are_drawn_are_those_of_the_machine(void **state)
     dig_machine_air_check_finish(&check);
 }
 
-static void what_cannot_be_checked_is_refused_and_writes_nothing(void **state)
+TEST(what_cannot_be_checked_is_refused_and_writes_nothing)
 {
-    (void)state;
     const struct machine *const  m     = &machines[4];
     struct dig_machine_recording r     = air_record(&m->machine, &m->track, NULL, 1);
     struct dig_machine           file  = m->machine;
@@ -310,19 +300,4 @@ static void what_cannot_be_checked_is_refused_and_writes_nothing(void **state)
     dig_machine_air_check_finish(NULL);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_file_that_is_right_is_called_right_in_every_line),
-        cmocka_unit_test(what_is_broken_is_named_and_nothing_is_named_beside_it),
-        cmocka_unit_test(two_breaks_at_once_are_both_named_with_their_values),
-        cmocka_unit_test(a_joint_that_does_not_move_is_not_judged),
-        cmocka_unit_test(of_a_machine_with_the_bucket_s_pressures_alone_the_bucket_is_judged),
-        cmocka_unit_test(what_no_cause_explains_is_left_over),
-        cmocka_unit_test(a_recording_with_a_dig_in_it_is_explained_by_nothing),
-        cmocka_unit_test(what_is_within_its_tolerance_is_no_fault),
-        cmocka_unit_test(the_pushes_that_are_drawn_are_those_of_the_machine),
-        cmocka_unit_test(what_cannot_be_checked_is_refused_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("machine_check", tests, build, tear_down);
-}
+TESTS_WITH(build, tear_down)

@@ -86,9 +86,8 @@ static char *written(void (*const put)(const struct dig_check_subject *, FILE *)
     return text;
 }
 
-static void every_question_is_asked_answered_and_when_wrong_says_what_to_do(void **state)
+TEST(every_question_is_asked_answered_and_when_wrong_says_what_to_do)
 {
-    (void)state;
     for (size_t i = 0; i < check.items; i++) {
         struct dig_check_words words;
         dig_check_say(&subject, &check.item[i], &words);
@@ -109,9 +108,8 @@ static void every_question_is_asked_answered_and_when_wrong_says_what_to_do(void
     check.items--;
 }
 
-static void an_offset_is_told_for_either_sign_of_the_map(void **state)
+TEST(an_offset_is_told_for_either_sign_of_the_map)
 {
-    (void)state;
     struct dig_check_item *const zero = add(DIG_CHECK_ZERO, DIG_JOINT_ARM, DIG_CHECK_WRONG);
     struct dig_check_words       words;
     zero->value = 0.25;
@@ -121,9 +119,8 @@ static void an_offset_is_told_for_either_sign_of_the_map(void **state)
     check.items--;
 }
 
-static void a_range_says_how_it_was_read(void **state)
+TEST(a_range_says_how_it_was_read)
 {
-    (void)state;
     struct dig_machine_air_check   turned = { .items = 0 };
     const struct dig_check_subject read   = { &machine, "m.yaml", "a.csv", &turned };
     const struct dig_check_item    item   = { .question = DIG_CHECK_MOVES,
@@ -143,9 +140,8 @@ static void a_range_says_how_it_was_read(void **state)
     assert_non_null(strstr(words.answer, "(-10 deg on what was read)"));
 }
 
-static void nothing_is_wider_than_80_columns(void **state)
+TEST(nothing_is_wider_than_80_columns)
 {
-    (void)state;
     char *const text   = written(dig_machine_check_text);
     int         column = 0;
     for (const char *c = text; *c != '\0'; c++) {
@@ -158,9 +154,8 @@ static void nothing_is_wider_than_80_columns(void **state)
     free(text);
 }
 
-static void what_cannot_be_told_apart_is_told_together(void **state)
+TEST(what_cannot_be_told_apart_is_told_together)
 {
-    (void)state;
     const size_t                 items  = check.items;
     struct dig_check_item *const factor = add(DIG_CHECK_FACTOR, DIG_JOINT_ARM, DIG_CHECK_DOUBTFUL);
     struct dig_check_item *const offset = add(DIG_CHECK_OFFSET, DIG_JOINT_ARM, DIG_CHECK_WRONG);
@@ -176,9 +171,8 @@ static void what_cannot_be_told_apart_is_told_together(void **state)
     check.items = items;
 }
 
-static void a_file_without_fault_fits_in_one_sentence(void **state)
+TEST(a_file_without_fault_fits_in_one_sentence)
 {
-    (void)state;
     struct dig_machine_air_check   good = { .items = 0 };
     const struct dig_check_subject fine = { &machine, "m.yaml", "a.csv", &good };
     char                           sentence[300];
@@ -189,9 +183,8 @@ static void a_file_without_fault_fits_in_one_sentence(void **state)
     assert_int_equal(strlen(cut), sizeof cut - 1);
 }
 
-static void json_is_read_back_and_holds_every_line(void **state)
+TEST(json_is_read_back_and_holds_every_line)
 {
-    (void)state;
     char *const      text = written(dig_machine_check_json);
     yaml_document_t  document;
     struct dig_error error = { "" };
@@ -212,9 +205,8 @@ static void json_is_read_back_and_holds_every_line(void **state)
     free(text);
 }
 
-static void the_page_escapes_texts_names_no_folder_and_has_a_picture_a_joint(void **state)
+TEST(the_page_escapes_texts_names_no_folder_and_has_a_picture_a_joint)
 {
-    (void)state;
     char            *text  = NULL;
     size_t           size  = 0;
     FILE *const      to    = open_memstream(&text, &size);
@@ -236,17 +228,4 @@ static void the_page_escapes_texts_names_no_folder_and_has_a_picture_a_joint(voi
     free(text);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_question_is_asked_answered_and_when_wrong_says_what_to_do),
-        cmocka_unit_test(an_offset_is_told_for_either_sign_of_the_map),
-        cmocka_unit_test(a_range_says_how_it_was_read),
-        cmocka_unit_test(nothing_is_wider_than_80_columns),
-        cmocka_unit_test(what_cannot_be_told_apart_is_told_together),
-        cmocka_unit_test(a_file_without_fault_fits_in_one_sentence),
-        cmocka_unit_test(json_is_read_back_and_holds_every_line),
-        cmocka_unit_test(the_page_escapes_texts_names_no_folder_and_has_a_picture_a_joint),
-    };
-    return cmocka_run_group_tests_name("machine_check_report", tests, make, drop);
-}
+TESTS_WITH(make, drop)

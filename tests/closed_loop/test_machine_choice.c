@@ -49,9 +49,8 @@ static const struct dig_model_parameter *parameter(const struct dig_model_effect
 }
 
 // The gain reads little in free air, where the drive pushes little, and much in every dig.
-static void a_gain_that_free_air_leaves_open_is_told_by_the_digs(void **state)
+TEST(a_gain_that_free_air_leaves_open_is_told_by_the_digs)
 {
-    (void)state;
     const struct fault fault  = { .gain = 0.08 };
     struct dig_trace   result = traced(&fault, 3);
     assert_int_equal(result.effects, 1);
@@ -69,9 +68,8 @@ static void a_gain_that_free_air_leaves_open_is_told_by_the_digs(void **state)
     dig_trace_finish(&result);
 }
 
-static void a_machine_as_its_file_says_is_left_alone(void **state)
+TEST(a_machine_as_its_file_says_is_left_alone)
 {
-    (void)state;
     const struct fault none   = { .gain = 0.0 };
     struct dig_trace   result = traced(&none, 4);
     assert_int_equal(result.effects, 0);
@@ -79,11 +77,4 @@ static void a_machine_as_its_file_says_is_left_alone(void **state)
     dig_trace_finish(&result);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_gain_that_free_air_leaves_open_is_told_by_the_digs),
-        cmocka_unit_test(a_machine_as_its_file_says_is_left_alone),
-    };
-    return cmocka_run_group_tests_name("machine_choice", tests, build, tear_down);
-}
+TESTS_WITH(build, tear_down)

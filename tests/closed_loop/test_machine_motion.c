@@ -36,9 +36,8 @@ static struct dig_motion best(const struct dig_correction *const a,
     return motion;
 }
 
-static void what_differs_in_speed_alone_is_told_by_moving_that_joint_fast(void **state)
+TEST(what_differs_in_speed_alone_is_told_by_moving_that_joint_fast)
 {
-    (void)state;
     for (int j = 0; j < DIG_JOINTS; j++) {
         struct dig_correction seal = { .delay_s = 0.0 };
         struct dig_correction oil  = { .delay_s = 0.0 };
@@ -56,9 +55,8 @@ static void what_differs_in_speed_alone_is_told_by_moving_that_joint_fast(void *
     }
 }
 
-static void what_a_turning_bucket_alone_feels_is_told_by_turning_it_fast(void **state)
+TEST(what_a_turning_bucket_alone_feels_is_told_by_turning_it_fast)
 {
-    (void)state;
     const struct dig_correction heavy = { .bucket = { .inertia_kgm2 = 500.0 } };
     assert_true(best(&heavy, &nothing).fast);
     // Inertia asks for acceleration, which goes with the square of the speed.
@@ -70,9 +68,8 @@ static void what_a_turning_bucket_alone_feels_is_told_by_turning_it_fast(void **
 // A constant error of a pressure is one force more in every row of its drive, whatever moves: the
 // readings of 20 s at 100 Hz average to 1 / sqrt(2000) of one's noise, or somewhat more, for slow
 // errors of a sensor do not average and angles are not known exactly.
-static void an_offset_is_as_many_sigmas_as_its_force_is_of_the_noise(void **state)
+TEST(an_offset_is_as_many_sigmas_as_its_force_is_of_the_noise)
 {
-    (void)state;
     struct dig_correction offset = { .delay_s = 0.0 };
     const double          Pa     = 3e4;
     const double          one_Pa = hypot(1e5, 2e5 / sqrt(12.0));
@@ -91,9 +88,8 @@ static void an_offset_is_as_many_sigmas_as_its_force_is_of_the_noise(void **stat
 
 // The offset that comes nearest to a rocker drawn too short while the bucket is held is found by
 // search: what is left of their difference shows where the linkage moves.
-static void a_linkage_that_looks_like_an_offset_is_told_by_turning_the_bucket(void **state)
+TEST(a_linkage_that_looks_like_an_offset_is_told_by_turning_the_bucket)
 {
-    (void)state;
     const struct dig_correction rocker  = { .rocker_m = 0.01 };
     struct dig_correction       nearest = { .delay_s = 0.0 };
     double                      least   = 1e9;
@@ -108,9 +104,8 @@ static void a_linkage_that_looks_like_an_offset_is_told_by_turning_the_bucket(vo
     assert_int_equal(best(&rocker, &nearest).joint, DIG_JOINT_BUCKET);
 }
 
-static void what_is_the_same_is_told_by_nothing(void **state)
+TEST(what_is_the_same_is_told_by_nothing)
 {
-    (void)state;
     const struct dig_correction heavy = { .bucket = { .mass_kg = 100.0 } };
     struct dig_motion           motion;
     double                      told = -1.0;
@@ -119,14 +114,4 @@ static void what_is_the_same_is_told_by_nothing(void **state)
     assert_close(told, 0.0, 0.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_differs_in_speed_alone_is_told_by_moving_that_joint_fast),
-        cmocka_unit_test(what_a_turning_bucket_alone_feels_is_told_by_turning_it_fast),
-        cmocka_unit_test(an_offset_is_as_many_sigmas_as_its_force_is_of_the_noise),
-        cmocka_unit_test(a_linkage_that_looks_like_an_offset_is_told_by_turning_the_bucket),
-        cmocka_unit_test(what_is_the_same_is_told_by_nothing),
-    };
-    return cmocka_run_group_tests_name("machine_motion", tests, read, NULL);
-}
+TESTS_WITH(read, NULL)

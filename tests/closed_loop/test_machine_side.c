@@ -9,9 +9,8 @@ static uint64_t most(const uint64_t quick, const uint64_t all)
     return test_is_quick() ? quick : all;
 }
 
-static void a_machine_as_its_file_says_raises_no_alarm(void **state)
+TEST(a_machine_as_its_file_says_raises_no_alarm)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= most(1, 3); seed++) {
         const struct fault     none = { .dry_N = 0.0 };
         struct campaign *const c    = trace(&none, seed);
@@ -75,9 +74,8 @@ static double apart(const struct campaign *const a, const struct campaign *const
     return sqrt(sum / whole);
 }
 
-static void each_effect_is_named_and_taken_off_the_digs(void **state)
+TEST(each_effect_is_named_and_taken_off_the_digs)
 {
-    (void)state;
     const struct {
         struct fault       fault;
         enum dig_effect_id effect;
@@ -139,9 +137,8 @@ static void taken_off(const struct campaign *const c, const struct campaign *con
 }
 
 // The first dig of a campaign need not be the machine's first.
-static void a_payload_may_have_been_there_before_the_first_dig(void **state)
+TEST(a_payload_may_have_been_there_before_the_first_dig)
 {
-    (void)state;
     const struct fault     none  = { .dry_N = 0.0 };
     const struct fault     laden = { .payload_kg = 70.0, .was_there = true };
     struct campaign *const clean = trace(&none, 16);
@@ -159,9 +156,8 @@ static void a_payload_may_have_been_there_before_the_first_dig(void **state)
 }
 
 // A payload that fell out before the second dig and stuck before the third.
-static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
+TEST(each_dig_is_rid_of_the_payload_that_it_carried)
 {
-    (void)state;
     const struct fault     none  = { .dry_N = 0.0 };
     const struct fault     some  = { .payload_kg = 120.0, .falls_out = true };
     struct campaign *const clean = trace(&none, 15);
@@ -183,9 +179,8 @@ static void each_dig_is_rid_of_the_payload_that_it_carried(void **state)
 }
 
 // Soil lies in a bucket where soil has lain before; a hair of it tells nothing of where.
-static void a_payload_of_ones_own_lies_where_the_common_one_does(void **state)
+TEST(a_payload_of_ones_own_lies_where_the_common_one_does)
 {
-    (void)state;
     const struct dig_added_mass common = { 60.0, { 6.0, -12.0 }, 0.0 };
     const struct dig_added_mass hair   = { 0.01, { 0.5, -0.5 }, 0.0 };
     struct dig_added_mass       two    = common;
@@ -207,9 +202,8 @@ static void a_payload_of_ones_own_lies_where_the_common_one_does(void **state)
 }
 
 // An effect of many parameters may be weak, too: it is not given to one of fewer.
-static void a_weak_effect_is_reported_among_what_it_may_be(void **state)
+TEST(a_weak_effect_is_reported_among_what_it_may_be)
 {
-    (void)state;
     for (uint64_t seed = 61; seed <= most(61, 63); seed++) {
         const struct fault     weak = { .rod_Pa = 3e4 };
         struct campaign *const c    = trace(&weak, seed);
@@ -224,9 +218,8 @@ static void a_weak_effect_is_reported_among_what_it_may_be(void **state)
     }
 }
 
-static void what_the_catalogue_lacks_gets_no_name(void **state)
+TEST(what_the_catalogue_lacks_gets_no_name)
 {
-    (void)state;
     const struct fault     fault = { .wandering_N = 3000.0 };
     struct campaign *const c     = trace(&fault, 5);
     assert_true(c->finding.significant && c->finding.unexplained);
@@ -236,9 +229,8 @@ static void what_the_catalogue_lacks_gets_no_name(void **state)
 
 // A payload of its own for every dig, say, would do for a gain that grows with the oil's
 // temperature.
-static void pressures_that_drift_get_no_name_and_say_what_they_follow(void **state)
+TEST(pressures_that_drift_get_no_name_and_say_what_they_follow)
 {
-    (void)state;
     for (uint64_t seed = 7; seed <= most(7, 9); seed++) {
         const struct fault     drifts = { .warm_perK = 1.2e-3, .warms = true };
         struct campaign *const c      = trace(&drifts, seed);
@@ -258,9 +250,8 @@ static void pressures_that_drift_get_no_name_and_say_what_they_follow(void **sta
 }
 
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
-static void valves_that_hunt_raise_no_alarm_and_hide_no_seal(void **state)
+TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
-    (void)state;
     for (uint64_t seed = 31; seed <= most(31, 32); seed++) {
         const struct fault     hunting = { .hunting_Pa = 9e4 };
         struct campaign *const c       = trace(&hunting, seed);
@@ -275,9 +266,8 @@ static void valves_that_hunt_raise_no_alarm_and_hide_no_seal(void **state)
 }
 
 // Missing is not zero: neither noise nor an effect is made of it.
-static void readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal(void **state)
+TEST(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal)
 {
-    (void)state;
     const struct fault     lossy = { .lost = 2.0 }; // one of 22
     struct campaign *const c     = trace(&lossy, 41);
     assert_false(c->finding.significant);
@@ -292,9 +282,8 @@ static void readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal(void **s
 
 // Points of the air lie between the samples of a slow recorder: rates of the sample before them
 // would look like a delay. Sensors are quiet enough to show it.
-static void a_slow_recorder_is_no_delay(void **state)
+TEST(a_slow_recorder_is_no_delay)
 {
-    (void)state;
     static const double      quiet    = 0.05;
     const struct dig_machine as_filed = machine;
     machine.pressure_step_Pa *= quiet;
@@ -317,9 +306,8 @@ static void a_slow_recorder_is_no_delay(void **state)
     machine = as_filed;
 }
 
-static void pressures_at_the_bucket_alone_tell_the_moment_and_its_seal(void **state)
+TEST(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal)
 {
-    (void)state;
     const struct fault     whole = { .dry_N = 0.0 };
     const struct fault     bare  = { .bare = true };
     struct campaign *const all   = trace(&whole, 51);
@@ -339,9 +327,8 @@ static void pressures_at_the_bucket_alone_tell_the_moment_and_its_seal(void **st
     end(d);
 }
 
-static void recordings_without_free_air_say_so_and_name_nothing(void **state)
+TEST(recordings_without_free_air_say_so_and_name_nothing)
 {
-    (void)state;
     const struct fault     seal = { .dry_N = 4000.0, .airless = true };
     struct campaign *const c    = trace(&seal, 71);
     assert_true(c->finding.no_air);
@@ -355,9 +342,8 @@ static void recordings_without_free_air_say_so_and_name_nothing(void **state)
     end(d);
 }
 
-static void how_the_machine_stands_is_told_where_it_was_recorded(void **state)
+TEST(how_the_machine_stands_is_told_where_it_was_recorded)
 {
-    (void)state;
     const struct fault           none = { .dry_N = 0.0 };
     struct dig_machine_recording r    = record(0, 0, &none, 1);
     struct dig_measured *const   m    = calloc(1, sizeof *m);
@@ -381,9 +367,8 @@ static void how_the_machine_stands_is_told_where_it_was_recorded(void **state)
     free(m);
 }
 
-static void a_recording_without_its_dig_is_refused_by_name(void **state)
+TEST(a_recording_without_its_dig_is_refused_by_name)
 {
-    (void)state;
     const struct fault           none  = { .dry_N = 0.0 };
     struct dig_machine_recording r     = record(0, 0, &none, 1);
     struct dig_measured *const   m     = calloc(1, sizeof *m);
@@ -401,24 +386,4 @@ static void a_recording_without_its_dig_is_refused_by_name(void **state)
     free(m);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_machine_as_its_file_says_raises_no_alarm),
-        cmocka_unit_test(each_effect_is_named_and_taken_off_the_digs),
-        cmocka_unit_test(a_payload_of_ones_own_lies_where_the_common_one_does),
-        cmocka_unit_test(a_payload_may_have_been_there_before_the_first_dig),
-        cmocka_unit_test(each_dig_is_rid_of_the_payload_that_it_carried),
-        cmocka_unit_test(a_weak_effect_is_reported_among_what_it_may_be),
-        cmocka_unit_test(what_the_catalogue_lacks_gets_no_name),
-        cmocka_unit_test(pressures_that_drift_get_no_name_and_say_what_they_follow),
-        cmocka_unit_test(valves_that_hunt_raise_no_alarm_and_hide_no_seal),
-        cmocka_unit_test(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal),
-        cmocka_unit_test(a_slow_recorder_is_no_delay),
-        cmocka_unit_test(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal),
-        cmocka_unit_test(recordings_without_free_air_say_so_and_name_nothing),
-        cmocka_unit_test(how_the_machine_stands_is_told_where_it_was_recorded),
-        cmocka_unit_test(a_recording_without_its_dig_is_refused_by_name),
-    };
-    return cmocka_run_group_tests_name("machine_side", tests, build, tear_down);
-}
+TESTS_WITH(build, tear_down)

@@ -112,9 +112,8 @@ static void make_batch(const struct ground *const g, double place[DIG_AXES],
 
 // At the gravel that was dug, the means differ from the table by no more than the covariance says,
 // and by not much less; so do the digs from their means.
-static void what_the_digs_leave_of_the_table_is_as_large_as_expected(void **state)
+TEST(what_the_digs_leave_of_the_table_is_as_large_as_expected)
 {
-    (void)state;
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
     double means = 0.0, features = 0.0, about = 0.0, freedom = 0.0, misfit = 0.0;
@@ -145,9 +144,8 @@ static void what_the_digs_leave_of_the_table_is_as_large_as_expected(void **stat
     assert_true(about / freedom > 0.6 && about / freedom < 1.1);
 }
 
-static void intervals_of_the_gravel_hold(void **state)
+TEST(intervals_of_the_gravel_hold)
 {
-    (void)state;
     static struct dig_whitened_digs batch;
     const double                    middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     size_t                          held                           = 0;
@@ -170,11 +168,4 @@ static void intervals_of_the_gravel_hold(void **state)
     assert_true((double)held >= 0.75 * (double)(grounds * DIG_AXES));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_the_digs_leave_of_the_table_is_as_large_as_expected),
-        cmocka_unit_test(intervals_of_the_gravel_hold),
-    };
-    return cmocka_run_group_tests_name("noise_shipped", tests, setup, teardown);
-}
+TESTS_WITH(setup, teardown)

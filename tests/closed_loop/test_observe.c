@@ -63,9 +63,8 @@ static double quick_wave(const double time_s)
 }
 
 // Whatever the pace and the place, the dig is recognised and its moment stands where the path says.
-static void pace_and_place_do_not_matter(void **state)
+TEST(pace_and_place_do_not_matter)
 {
-    (void)state;
     const struct dig_curve_set set       = two_digs();
     const double               paces[]   = { 1.0, 1.7, 0.6 };
     const double               blur_most = 0.02; // of +-0.16 s on a wave of 7.9 s and its ends
@@ -91,9 +90,8 @@ static void pace_and_place_do_not_matter(void **state)
 }
 
 // A dig is smoothed over as much of its path as the table's, however fast it was.
-static void a_fast_dig_is_read_as_the_tables(void **state)
+TEST(a_fast_dig_is_read_as_the_tables)
 {
-    (void)state;
     const struct dig_curve_set set      = two_digs();
     static const double        slower[] = { 1.0 / 3.0, 2.0 };
     struct dig_observed        plain;
@@ -142,9 +140,8 @@ static struct dig_recording drive_so(const struct dig_curve_set *const set, cons
     return drive(&dug, 1.3, slow_wave);
 }
 
-static void depth_and_attack_of_a_dig_are_told_where_the_table_has_them(void **state)
+TEST(depth_and_attack_of_a_dig_are_told_where_the_table_has_them)
 {
-    (void)state;
     struct dig_approach_set    others;
     const struct dig_curve_set set = dug_otherwise(&others);
     struct dig_observed        o;
@@ -171,9 +168,8 @@ static void depth_and_attack_of_a_dig_are_told_where_the_table_has_them(void **s
 }
 
 // The second trajectory is the first with the bucket turned by less than the table was dug so.
-static void of_trajectories_that_differ_by_a_turn_the_nearer_is_told(void **state)
+TEST(of_trajectories_that_differ_by_a_turn_the_nearer_is_told)
 {
-    (void)state;
     const struct dig_approach turned = { 1.0, 0.03 };
     struct dig_approach_set   others;
     struct dig_curve_set      set = dug_otherwise(&others);
@@ -190,9 +186,8 @@ static void of_trajectories_that_differ_by_a_turn_the_nearer_is_told(void **stat
     dig_recording_finish(&r);
 }
 
-static void what_lies_beyond_the_table_is_distance(void **state)
+TEST(what_lies_beyond_the_table_is_distance)
 {
-    (void)state;
     struct dig_approach_set    others;
     const struct dig_curve_set set = dug_otherwise(&others);
     struct dig_observed        o   = { .pace = 42.0 };
@@ -212,9 +207,8 @@ static void what_lies_beyond_the_table_is_distance(void **state)
     dig_recording_finish(&r);
 }
 
-static void a_path_of_another_kind_is_refused_and_writes_nothing(void **state)
+TEST(a_path_of_another_kind_is_refused_and_writes_nothing)
 {
-    (void)state;
     const struct dig_curve_set  set = two_digs();
     const struct dig_trajectory up  = { "up", 0.0, 0.0, 0.0, 1, { { "up", 2.0, 0.0, 0.1, 0.0 } } };
     const struct dig_trajectory still = { "still", 0.0, 0.0,
@@ -247,9 +241,8 @@ static void lose(struct dig_recording *const r, const size_t from, const size_t 
 }
 
 // A moving average of a straight line is the line, whichever of its samples are there.
-static void short_gaps_are_bridged_by_what_lies_about_them(void **state)
+TEST(short_gaps_are_bridged_by_what_lies_about_them)
 {
-    (void)state;
     const struct dig_curve_set set = two_digs();
     struct dig_recording       r   = drive(&set.trajectory[0], 1.0, straight);
     struct dig_observed        whole, holed;
@@ -273,9 +266,8 @@ static void short_gaps_are_bridged_by_what_lies_about_them(void **state)
     dig_recording_finish(&r);
 }
 
-static void a_long_gap_is_not_measured_and_of_the_moment_refused(void **state)
+TEST(a_long_gap_is_not_measured_and_of_the_moment_refused)
 {
-    (void)state;
     const struct dig_curve_set set       = two_digs();
     struct dig_error           e         = { "" };
     struct dig_observed        o         = { .pace = 42.0 };
@@ -302,9 +294,8 @@ static void a_long_gap_is_not_measured_and_of_the_moment_refused(void **state)
 
 // Of 50 Hz a recording may lack 20 ms; of one that lacks more what the smoothing reaches beyond is
 // not told.
-static void a_recording_cut_short_tells_what_it_has(void **state)
+TEST(a_recording_cut_short_tells_what_it_has)
 {
-    (void)state;
     const struct dig_curve_set set = two_digs();
     struct dig_recording       r   = drive(&set.trajectory[0], 1.0, straight);
     struct dig_observed        whole, cut;
@@ -332,9 +323,8 @@ static void a_recording_cut_short_tells_what_it_has(void **state)
 
 // A bucket that waits in the soil, or goes now fast and now slowly, is as far on its path as one
 // that does not.
-static void rest_and_haste_within_the_dig_do_not_matter(void **state)
+TEST(rest_and_haste_within_the_dig_do_not_matter)
 {
-    (void)state;
     const struct dig_curve_set set    = two_digs();
     struct dig_recording       r      = drive(&set.trajectory[0], 1.0, quick_wave);
     struct dig_recording       uneven = { r.rows + 600, calloc(r.rows + 600, sizeof *uneven.row) };
@@ -355,9 +345,8 @@ static void rest_and_haste_within_the_dig_do_not_matter(void **state)
 }
 
 // A bucket that waits before and after its dig was not slower for it.
-static void rest_before_and_after_is_no_pace(void **state)
+TEST(rest_before_and_after_is_no_pace)
 {
-    (void)state;
     const struct dig_curve_set set  = two_digs();
     struct dig_recording       r    = drive(&set.trajectory[1], 0.8, slow_wave);
     struct dig_recording       rest = { r.rows + 400, calloc(r.rows + 400, sizeof *rest.row) };
@@ -378,9 +367,8 @@ static void rest_before_and_after_is_no_pace(void **state)
 
 // The bucket came down along its first phase, or went on along its last, for longer than the
 // trajectory says.
-static void what_lies_beyond_the_trajectory_is_left_out(void **state)
+TEST(what_lies_beyond_the_trajectory_is_left_out)
 {
-    (void)state;
     const struct dig_curve_set set    = two_digs();
     struct dig_trajectory      longer = set.trajectory[0];
     longer.phase[0].duration_s += 0.1;
@@ -402,23 +390,4 @@ static void what_lies_beyond_the_trajectory_is_left_out(void **state)
     }
     dig_recording_finish(&r);
     dig_recording_finish(&l);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pace_and_place_do_not_matter),
-        cmocka_unit_test(a_fast_dig_is_read_as_the_tables),
-        cmocka_unit_test(depth_and_attack_of_a_dig_are_told_where_the_table_has_them),
-        cmocka_unit_test(of_trajectories_that_differ_by_a_turn_the_nearer_is_told),
-        cmocka_unit_test(what_lies_beyond_the_table_is_distance),
-        cmocka_unit_test(a_path_of_another_kind_is_refused_and_writes_nothing),
-        cmocka_unit_test(short_gaps_are_bridged_by_what_lies_about_them),
-        cmocka_unit_test(a_long_gap_is_not_measured_and_of_the_moment_refused),
-        cmocka_unit_test(a_recording_cut_short_tells_what_it_has),
-        cmocka_unit_test(rest_and_haste_within_the_dig_do_not_matter),
-        cmocka_unit_test(rest_before_and_after_is_no_pace),
-        cmocka_unit_test(what_lies_beyond_the_trajectory_is_left_out),
-    };
-    return cmocka_run_group_tests_name("observe", tests, NULL, NULL);
 }

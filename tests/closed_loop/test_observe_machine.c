@@ -104,9 +104,8 @@ static void expect_both(const struct dig_observed_digs *const digs)
     }
 }
 
-static void every_dig_is_found_and_resists_as_the_force_recording_says(void **state)
+TEST(every_dig_is_found_and_resists_as_the_force_recording_says)
 {
-    (void)state;
     struct dig_machine_recording r     = record();
     struct dig_observed_digs     digs  = { .digs = 0 };
     struct dig_error             error = { "" };
@@ -128,9 +127,8 @@ static void every_dig_is_found_and_resists_as_the_force_recording_says(void **st
 }
 
 // What was not measured is not made up: the other dig is whole.
-static void a_dig_with_a_gap_is_seen_but_not_observed(void **state)
+TEST(a_dig_with_a_gap_is_seen_but_not_observed)
 {
-    (void)state;
     struct dig_machine_recording r    = record();
     struct dig_observed_digs     digs = { .digs = 0 };
     for (size_t i = r.rows * 6 / 10; i < r.rows * 7 / 10; i++) {
@@ -144,9 +142,8 @@ static void a_dig_with_a_gap_is_seen_but_not_observed(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void without_a_dig_it_is_refused_and_nothing_written(void **state)
+TEST(without_a_dig_it_is_refused_and_nothing_written)
 {
-    (void)state;
     struct dig_machine_recording r    = record();
     const size_t                 rows = r.rows;
     struct dig_observed_digs     digs = { .seen = 42 };
@@ -171,12 +168,4 @@ static void without_a_dig_it_is_refused_and_nothing_written(void **state)
     dig_observed_digs_finish(NULL);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_dig_is_found_and_resists_as_the_force_recording_says),
-        cmocka_unit_test(a_dig_with_a_gap_is_seen_but_not_observed),
-        cmocka_unit_test(without_a_dig_it_is_refused_and_nothing_written),
-    };
-    return cmocka_run_group_tests_name("observe_machine", tests, build, tear_down);
-}
+TESTS_WITH(build, tear_down)

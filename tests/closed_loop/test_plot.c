@@ -29,9 +29,8 @@ static char *svg_of(const char *const text)
     return svg;
 }
 
-static void no_text_runs_a_command(void **state)
+TEST(no_text_runs_a_command)
 {
-    (void)state;
     static const struct {
         const char *before, *behind;
     } holds[] = {
@@ -51,9 +50,8 @@ static void no_text_runs_a_command(void **state)
     }
 }
 
-static void markup_and_control_characters_are_escaped(void **state)
+TEST(markup_and_control_characters_are_escaped)
 {
-    (void)state;
     char *const svg = svg_of("<script>\"'&\x1b[31m\xff\xc2\x9b é");
     assert_null(strstr(svg, "<script>"));
     assert_null(strchr(svg, '\x1b'));
@@ -72,9 +70,8 @@ static void markup_and_control_characters_are_escaped(void **state)
 }
 
 // 0 to 1 kN·m at the left is 0 to 0.1 N·m at the right: both scales' numbers are drawn.
-static void a_second_scale_stands_at_the_right(void **state)
+TEST(a_second_scale_stands_at_the_right)
 {
-    (void)state;
     struct dig_plot  plot  = { .title        = "",
                                .x_label      = "x",
                                .y_label      = "left, kN·m",
@@ -96,9 +93,8 @@ static void a_second_scale_stands_at_the_right(void **state)
     }
 }
 
-static void the_users_start_up_file_is_not_run(void **state)
+TEST(the_users_start_up_file_is_not_run)
 {
-    (void)state;
     FILE *const file = fopen(scratch_path(".gnuplot"), "w");
     assert_non_null(file);
     (void)fprintf(file, "system 'touch %s'\n", scratch_path("STARTED"));
@@ -114,13 +110,4 @@ static void the_users_start_up_file_is_not_run(void **state)
     assert_false(scratch_exists("STARTED"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_text_runs_a_command),
-        cmocka_unit_test(markup_and_control_characters_are_escaped),
-        cmocka_unit_test(a_second_scale_stands_at_the_right),
-        cmocka_unit_test(the_users_start_up_file_is_not_run),
-    };
-    return cmocka_run_group_tests_name("plot", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -60,9 +60,8 @@ static struct dig_whiteness judge(const double magnitude, uint64_t seed)
 }
 
 // Worked out on paper: r = -9/10, 8/10, -7/10; 10 * 12 * (.81 / 9 + .64 / 8 + .49 / 7).
-static void numbers_that_alternate_are_28_point_8(void **state)
+TEST(numbers_that_alternate_are_28_point_8)
 {
-    (void)state;
     const double z[] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 };
     assert_close(dig_portmanteau(10, z), 28.8, 1e-9);
     // One that stands alone is correlated with nothing; scale does not matter.
@@ -76,9 +75,8 @@ static void numbers_that_alternate_are_28_point_8(void **state)
     assert_close(dig_portmanteau(0, NULL), 0.0, 0.0);
 }
 
-static void digs_that_lack_nothing_are_white(void **state)
+TEST(digs_that_lack_nothing_are_white)
 {
-    (void)state;
     enum { CAMPAIGNS = 40 };
     int small = 0;
     int large = 0;
@@ -94,9 +92,8 @@ static void digs_that_lack_nothing_are_white(void **state)
     assert_true(large >= 10 && large <= 30);
 }
 
-static void what_lasts_along_the_dig_is_not_white(void **state)
+TEST(what_lasts_along_the_dig_is_not_white)
 {
-    (void)state;
     for (uint64_t c = 0; c < 5; c++) {
         const struct dig_whiteness w = judge(0.8, 200 + c);
         assert_true(w.p <= 0.05);
@@ -105,12 +102,4 @@ static void what_lasts_along_the_dig_is_not_white(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_that_alternate_are_28_point_8),
-        cmocka_unit_test(digs_that_lack_nothing_are_white),
-        cmocka_unit_test(what_lasts_along_the_dig_is_not_white),
-    };
-    return cmocka_run_group_tests_name("portmanteau", tests, make, clean);
-}
+TESTS_WITH(make, clean)

@@ -37,9 +37,8 @@ static struct dig_fitted fit_digs(const struct dig_gravel *const gravel, uint64_
 
 // Digs drawn from the model itself at places of its prior: nine of ten intervals hold the place,
 // to three sigmas of a binomial, more where a bound is counted in.
-static void nine_intervals_of_ten_hold_the_truth(void **state)
+TEST(nine_intervals_of_ten_hold_the_truth)
 {
-    (void)state;
     static struct dig_whitened_digs drawn;
     const struct dig_gravel         gravel    = { { 0.6, 0.6, 2500 } };
     uint64_t                        seed      = 21;
@@ -76,9 +75,8 @@ static double density_at(struct dig_likelihood *const l, const struct dig_fitted
 }
 
 // Of a bent ridge that leans on two bounds, whatever the seed.
-static void an_interval_holds_nine_tenths_of_the_posterior(void **state)
+TEST(an_interval_holds_nine_tenths_of_the_posterior)
 {
-    (void)state;
     enum { SEEDS = 10 };
     static struct dig_likelihood l;
     static struct dig_fitted     fitted[SEEDS];
@@ -115,11 +113,4 @@ static void an_interval_holds_nine_tenths_of_the_posterior(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nine_intervals_of_ten_hold_the_truth),
-        cmocka_unit_test(an_interval_holds_nine_tenths_of_the_posterior),
-    };
-    return cmocka_run_group_tests_name("posterior", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

@@ -41,9 +41,8 @@ static struct dig_machine_recording record(const double arm_Pa, const double ang
     return r;
 }
 
-static void sensors_louder_than_the_file_are_believed(void **state)
+TEST(sensors_louder_than_the_file_are_believed)
 {
-    (void)state;
     struct dig_machine_recording r   = record(5e5, 1.5e-3);
     struct dig_machine           was = machine;
     struct dig_machine           m   = machine;
@@ -58,9 +57,8 @@ static void sensors_louder_than_the_file_are_believed(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void quieter_ones_are_not(void **state)
+TEST(quieter_ones_are_not)
 {
-    (void)state;
     struct dig_machine_recording r = record(1e4, 1e-5);
     struct dig_machine           m = machine;
     dig_reading_noise_raise(&m, 1, &r);
@@ -71,9 +69,8 @@ static void quieter_ones_are_not(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void readings_that_do_not_arrive_are_no_noise(void **state)
+TEST(readings_that_do_not_arrive_are_no_noise)
 {
-    (void)state;
     struct dig_machine_recording r    = record(1e4, 1e-5);
     struct dig_machine           m    = machine;
     uint64_t                     seed = 5;
@@ -93,12 +90,4 @@ static void readings_that_do_not_arrive_are_no_noise(void **state)
     dig_machine_recording_finish(&r);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sensors_louder_than_the_file_are_believed),
-        cmocka_unit_test(quieter_ones_are_not),
-        cmocka_unit_test(readings_that_do_not_arrive_are_no_noise),
-    };
-    return cmocka_run_group_tests_name("reading_noise", tests, read_machine, NULL);
-}
+TESTS_WITH(read_machine, NULL)

@@ -31,9 +31,8 @@ static size_t point_at(const double path_m)
     return (size_t)lround(path_m / 1.15 * (DIG_CURVE_POINTS - 1));
 }
 
-static void a_straight_drag_is_as_deep_fast_and_full_as_it_was_drawn(void **state)
+TEST(a_straight_drag_is_as_deep_fast_and_full_as_it_was_drawn)
 {
-    (void)state;
     const struct dig_curve_set set = straight();
     const struct dig_measured  dig = { .pass = 3, .pace = 1.0, .last = 1.0 };
     double                     s[DIG_REGRESSORS][DIG_CURVE_POINTS];
@@ -56,10 +55,8 @@ static void a_straight_drag_is_as_deep_fast_and_full_as_it_was_drawn(void **stat
     assert_true(most > 0.8 * jump && most <= jump * 1.001);
 }
 
-static void
-a_dig_at_twice_the_pace_has_twice_the_speed_and_four_times_the_acceleration(void **state)
+TEST(a_dig_at_twice_the_pace_has_twice_the_speed_and_four_times_the_acceleration)
 {
-    (void)state;
     const struct dig_curve_set set  = straight();
     const struct dig_measured  slow = { .pass = 1, .pace = 1.0, .last = 1.0 };
     const struct dig_measured  fast = { .pass = 1, .pace = 2.0, .last = 1.0 };
@@ -77,9 +74,8 @@ a_dig_at_twice_the_pace_has_twice_the_speed_and_four_times_the_acceleration(void
 }
 
 // A bucket that only turns moves its tooth on a circle.
-static void a_turning_tooth_is_drawn_to_its_pin(void **state)
+TEST(a_turning_tooth_is_drawn_to_its_pin)
 {
-    (void)state;
     const double         omega    = 0.5;
     struct dig_curve_set set      = straight();
     set.trajectory[0].phases      = 1;
@@ -95,9 +91,8 @@ static void a_turning_tooth_is_drawn_to_its_pin(void **state)
     }
 }
 
-static void only_a_last_phase_that_rises_is_lifted(void **state)
+TEST(only_a_last_phase_that_rises_is_lifted)
 {
-    (void)state;
     struct dig_curve_set set = straight();
     assert_false(dig_regressors_is_lifted(&set, 0, 0.02));
     assert_false(dig_regressors_is_lifted(&set, 0, 0.5));
@@ -106,26 +101,12 @@ static void only_a_last_phase_that_rises_is_lifted(void **state)
     assert_false(dig_regressors_is_lifted(&set, 0, 0.99));
 }
 
-static void every_state_has_a_name_of_its_own(void **state)
+TEST(every_state_has_a_name_of_its_own)
 {
-    (void)state;
     for (int a = 0; a < DIG_REGRESSORS; a++) {
         for (int b = 0; b < a; b++) {
             assert_string_not_equal(dig_regressors_name((enum dig_regressors)a),
                                     dig_regressors_name((enum dig_regressors)b));
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_straight_drag_is_as_deep_fast_and_full_as_it_was_drawn),
-        cmocka_unit_test(
-            a_dig_at_twice_the_pace_has_twice_the_speed_and_four_times_the_acceleration),
-        cmocka_unit_test(a_turning_tooth_is_drawn_to_its_pin),
-        cmocka_unit_test(only_a_last_phase_that_rises_is_lifted),
-        cmocka_unit_test(every_state_has_a_name_of_its_own),
-    };
-    return cmocka_run_group_tests_name("state", tests, NULL, NULL);
 }

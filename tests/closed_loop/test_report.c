@@ -48,9 +48,8 @@ static char *slurp(FILE *const from)
     return text;
 }
 
-static void the_page_stands_alone_and_holds_the_numbers(void **state)
+TEST(the_page_stands_alone_and_holds_the_numbers)
 {
-    (void)state;
     const struct dig_report report = one_run();
     const char *const       path   = scratch_path("page.html");
     struct dig_error        error  = { "" };
@@ -82,9 +81,8 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
     free(page);
 }
 
-static void the_terminal_gets_truth_estimate_interval_and_error(void **state)
+TEST(the_terminal_gets_truth_estimate_interval_and_error)
 {
-    (void)state;
     struct dig_report report = one_run();
     FILE *const       file   = tmpfile();
     dig_report_text(&report, file);
@@ -98,9 +96,8 @@ static void the_terminal_gets_truth_estimate_interval_and_error(void **state)
     (void)fclose(file);
 }
 
-static void json_holds_the_same(void **state)
+TEST(json_holds_the_same)
 {
-    (void)state;
     const struct dig_report report = one_run();
     FILE *const             file   = tmpfile();
     dig_report_json(&report, file);
@@ -112,9 +109,8 @@ static void json_holds_the_same(void **state)
     (void)fclose(file);
 }
 
-static void without_gnuplot_it_says_so(void **state)
+TEST(without_gnuplot_it_says_so)
 {
-    (void)state;
     const struct dig_report report = one_run();
     struct dig_error        error  = { "" };
     const char *const       kept   = getenv("PATH");
@@ -128,13 +124,4 @@ static void without_gnuplot_it_says_so(void **state)
     assert_non_null(strstr(error.text, "gnuplot"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_page_stands_alone_and_holds_the_numbers),
-        cmocka_unit_test(the_terminal_gets_truth_estimate_interval_and_error),
-        cmocka_unit_test(json_holds_the_same),
-        cmocka_unit_test(without_gnuplot_it_says_so),
-    };
-    return cmocka_run_group_tests_name("report", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

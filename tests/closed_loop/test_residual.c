@@ -47,9 +47,8 @@ static void drop(struct bench *const b)
     free(b->curves);
 }
 
-static void sigmas_are_told_apart_by_part_and_by_before_and_after(void **state)
+TEST(sigmas_are_told_apart_by_part_and_by_before_and_after)
 {
-    (void)state;
     struct bench        b = make(0.5, 2.0);
     struct dig_residual r[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
     dig_residual_of(b.set, b.dig, b.curves, false, r);
@@ -64,9 +63,8 @@ static void sigmas_are_told_apart_by_part_and_by_before_and_after(void **state)
 }
 
 // CONTRACT's error is summed over rig time on another grid.
-static void the_parts_add_up_to_the_error_of_the_dig(void **state)
+TEST(the_parts_add_up_to_the_error_of_the_dig)
 {
-    (void)state;
     static const double off[][2] = { { 0.5, 2.0 }, { 3.0, 0.1 } };
     for (size_t i = 0; i < sizeof off / sizeof off[0]; i++) {
         struct bench        b    = make(off[i][0], off[i][1]);
@@ -83,9 +81,8 @@ static void the_parts_add_up_to_the_error_of_the_dig(void **state)
     }
 }
 
-static void what_was_not_measured_is_not_known(void **state)
+TEST(what_was_not_measured_is_not_known)
 {
-    (void)state;
     struct bench        b = make(1.0, 1.0);
     struct dig_residual r[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
     b.dig->last = 0.3; // broken off before it was lifted
@@ -95,14 +92,4 @@ static void what_was_not_measured_is_not_known(void **state)
     assert_true(isnan(r[DIG_PART_LIFTED][DIG_CHANNEL_MY_Nm].sigmas));
     assert_close(r[DIG_PART_SOIL][DIG_CHANNEL_MY_Nm].sigmas, 1.0, 1e-9);
     drop(&b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sigmas_are_told_apart_by_part_and_by_before_and_after),
-        cmocka_unit_test(the_parts_add_up_to_the_error_of_the_dig),
-        cmocka_unit_test(what_was_not_measured_is_not_known),
-    };
-    return cmocka_run_group_tests_name("residual", tests, NULL, NULL);
 }

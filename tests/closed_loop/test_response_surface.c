@@ -7,9 +7,8 @@
 
 // The made table is linear in friction and rolling friction and proportional to density: between
 // its points the surface must agree with the closed form.
-static void between_the_points_it_is_the_truth(void **state)
+TEST(between_the_points_it_is_the_truth)
 {
-    (void)state;
     const struct made_options    options = { .relative_sd = 0.1, .packings = 5 };
     struct dig_curve_set        *set     = made_table(&options);
     struct dig_response_surface *surface = malloc(sizeof *surface);
@@ -33,9 +32,8 @@ static void between_the_points_it_is_the_truth(void **state)
     made_table_destroy(set);
 }
 
-static void a_place_is_a_gravel_and_back(void **state)
+TEST(a_place_is_a_gravel_and_back)
 {
-    (void)state;
     const struct made_options    options = { .packings = 2, .one_density = true };
     struct dig_curve_set        *set     = made_table(&options);
     struct dig_response_surface *surface = malloc(sizeof *surface);
@@ -53,9 +51,8 @@ static void a_place_is_a_gravel_and_back(void **state)
 }
 
 // The same digs in three entries are no more digs than in one.
-static void copies_vouch_for_nothing_twice(void **state)
+TEST(copies_vouch_for_nothing_twice)
 {
-    (void)state;
     const struct made_options    options         = { .packings = 6 };
     struct dig_curve_set        *set             = made_table(&options);
     struct dig_response_surface *surface         = malloc(sizeof *surface);
@@ -72,9 +69,8 @@ static void copies_vouch_for_nothing_twice(void **state)
 }
 
 // Features are linear in the curve, so those of the surface are those of its curve.
-static void features_are_those_of_the_curve(void **state)
+TEST(features_are_those_of_the_curve)
 {
-    (void)state;
     const struct made_options    options = { .packings = 3 };
     struct dig_curve_set        *set     = made_table(&options);
     struct dig_response_surface *surface = malloc(sizeof *surface);
@@ -119,9 +115,8 @@ static double share_taken_over(struct dig_curve_set *const set, const size_t e)
 
 // An entry of n packings, each of variance 1, that gives the surface a share h of itself: the
 // surface's variance there is h / n.
-static void its_noise_is_what_it_takes_over_from_each_entry(void **state)
+TEST(its_noise_is_what_it_takes_over_from_each_entry)
 {
-    (void)state;
     const struct made_options    options = { .packings = 4 };
     struct dig_curve_set        *set     = made_table(&options);
     struct dig_response_surface *surface = malloc(sizeof *surface);
@@ -136,9 +131,8 @@ static void its_noise_is_what_it_takes_over_from_each_entry(void **state)
     made_table_destroy(set);
 }
 
-static void too_few_entries_are_refused(void **state)
+TEST(too_few_entries_are_refused)
 {
-    (void)state;
     const struct made_options    options = { .packings = 4 };
     struct dig_curve_set        *set     = made_table(&options);
     struct dig_response_surface *surface = malloc(sizeof *surface);
@@ -150,17 +144,4 @@ static void too_few_entries_are_refused(void **state)
     assert_int_equal(dig_response_surface_fit(set, surface), DIG_EINVAL);
     free(surface);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(between_the_points_it_is_the_truth),
-        cmocka_unit_test(a_place_is_a_gravel_and_back),
-        cmocka_unit_test(copies_vouch_for_nothing_twice),
-        cmocka_unit_test(features_are_those_of_the_curve),
-        cmocka_unit_test(its_noise_is_what_it_takes_over_from_each_entry),
-        cmocka_unit_test(too_few_entries_are_refused),
-    };
-    return cmocka_run_group_tests_name("surface", tests, NULL, NULL);
 }

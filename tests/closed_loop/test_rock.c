@@ -86,9 +86,8 @@ static struct dig_search search(void)
     return found;
 }
 
-static void a_rock_elsewhere_is_found_where_it_lies(void **state)
+TEST(a_rock_elsewhere_is_found_where_it_lies)
 {
-    (void)state;
     static const double ahead_m[]   = { 0.02, 0.035 };
     static const double factor[][2] = { { 1.5, 1.0 }, { 0.4, 2.0 } };
     for (size_t i = 0; i < 2; i++) {
@@ -104,9 +103,8 @@ static void a_rock_elsewhere_is_found_where_it_lies(void **state)
 }
 
 // The same dip or hollow in the ground is no rock, nor is what another effect explains.
-static void what_is_no_hump_is_no_rock(void **state)
+TEST(what_is_no_hump_is_no_rock)
 {
-    (void)state;
     static const double hollow[] = { -1.5, -1.5 };
     dig(0.02, hollow, 63);
     struct dig_search found = search();
@@ -132,11 +130,4 @@ static void what_is_no_hump_is_no_rock(void **state)
     assert_false(found.is_rock);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rock_elsewhere_is_found_where_it_lies),
-        cmocka_unit_test(what_is_no_hump_is_no_rock),
-    };
-    return cmocka_run_group_tests_name("rock", tests, rocky_setup, world_teardown);
-}
+TESTS_WITH(rocky_setup, world_teardown)

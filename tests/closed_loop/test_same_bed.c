@@ -41,9 +41,8 @@ static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], co
     return batch;
 }
 
-static void recordings_of_one_bed_count_once(void **state)
+TEST(recordings_of_one_bed_count_once)
 {
-    (void)state;
     struct dig_measured *const measured = calloc(DIGS, sizeof *measured);
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (size_t times = 1; times <= DIGS; times *= 2) {
@@ -57,9 +56,8 @@ static void recordings_of_one_bed_count_once(void **state)
     free(measured);
 }
 
-static void without_a_dig_its_bed_counts_as_long_as_another_has_it(void **state)
+TEST(without_a_dig_its_bed_counts_as_long_as_another_has_it)
 {
-    (void)state;
     struct dig_measured *const      measured = calloc(DIGS, sizeof *measured);
     struct dig_whitened_digs *const batch    = batch_of(measured, 2, 0.03, 5);
     struct dig_whitened_digs *const others   = malloc(sizeof *others);
@@ -76,9 +74,8 @@ static void without_a_dig_its_bed_counts_as_long_as_another_has_it(void **state)
 // What the mean of digs is off by is what the mean of their beds is: over many campaigns, the
 // squares that a plain gravel leaves come to as much with one bed recorded eight times as with
 // eight beds.
-static void the_mean_of_one_bed_is_no_nearer_to_its_gravel(void **state)
+TEST(the_mean_of_one_bed_is_no_nearer_to_its_gravel)
 {
-    (void)state;
     enum { CAMPAIGNS = 60 };
     static const struct dig_hypothesis plain    = { .effects = 0 };
     struct dig_measured *const         measured = calloc(DIGS, sizeof *measured);
@@ -99,12 +96,4 @@ static void the_mean_of_one_bed_is_no_nearer_to_its_gravel(void **state)
     free(measured);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(recordings_of_one_bed_count_once),
-        cmocka_unit_test(without_a_dig_its_bed_counts_as_long_as_another_has_it),
-        cmocka_unit_test(the_mean_of_one_bed_is_no_nearer_to_its_gravel),
-    };
-    return cmocka_run_group_tests_name("same_bed", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

@@ -48,9 +48,8 @@ static struct bench make(const double step_Pa, const double noise, const double 
     return b;
 }
 
-static void a_load_that_comes_and_goes_is_whole(void **state)
+TEST(a_load_that_comes_and_goes_is_whole)
 {
-    (void)state;
     const double steps[]  = { 0.0, 2e5, 2e5, 1e3 };
     const double noises[] = { 0.0, 0.0, 1e5, 1e5 };
     for (int k = 0; k < 4; k++) {
@@ -62,9 +61,8 @@ static void a_load_that_comes_and_goes_is_whole(void **state)
     }
 }
 
-static void a_sensor_that_ends_is_named_with_its_limit(void **state)
+TEST(a_sensor_that_ends_is_named_with_its_limit)
 {
-    (void)state;
     const double steps[]  = { 0.0, 2e5, 2e5, 1e3 };
     const double noises[] = { 0.0, 0.0, 1e5, 1e5 };
     for (int k = 0; k < 4; k++) {
@@ -79,9 +77,8 @@ static void a_sensor_that_ends_is_named_with_its_limit(void **state)
     }
 }
 
-static void a_return_side_may_stand_still(void **state)
+TEST(a_return_side_may_stand_still)
 {
-    (void)state;
     struct bench    b    = make(0.0, 0.0, 1e6); // nothing is ever above the return's pressure
     struct dig_clip clip = { .time_s = 0.0 };
     assert_false(dig_saturation_find(&b.machine, &b.recording, &clip));
@@ -92,9 +89,8 @@ static void a_return_side_may_stand_still(void **state)
 }
 
 // Where every noisy reading but the cut-off ones moves, a fifth of a second at the limit is enough.
-static void a_sensor_that_ends_for_a_moment_is_named(void **state)
+TEST(a_sensor_that_ends_for_a_moment_is_named)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct bench    b    = make(2e5, 2e5, 1e9);
         struct dig_clip clip = { .time_s = -7.0 };
@@ -120,9 +116,8 @@ static void a_sensor_that_ends_for_a_moment_is_named(void **state)
 }
 
 // A bucket held still, its readings without noise: the same value for seconds, which is no limit.
-static void a_load_that_stands_still_without_noise_is_whole(void **state)
+TEST(a_load_that_stands_still_without_noise_is_whole)
 {
-    (void)state;
     struct bench    b    = make(2e5, 0.0, 1e9);
     struct dig_clip clip = { .time_s = -7.0 };
     for (int i = 0; i < ROWS; i++) {
@@ -134,9 +129,8 @@ static void a_load_that_stands_still_without_noise_is_whole(void **state)
 }
 
 // Fine steps without noise: the load moves from reading to reading, but is held at two places.
-static void a_load_that_is_held_elsewhere_as_long_is_whole(void **state)
+TEST(a_load_that_is_held_elsewhere_as_long_is_whole)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct bench    b    = make(1e3, 0.0, 1e9);
         struct dig_clip clip = { .time_s = -7.0 };
@@ -153,9 +147,8 @@ static void a_load_that_is_held_elsewhere_as_long_is_whole(void **state)
 
 // By drawing: readings of a load that stands still, in steps of twice the noise's sigma, are called
 // as improbable as p in at most a share p of recordings.
-static void the_chance_is_no_smaller_than_it_is(void **state)
+TEST(the_chance_is_no_smaller_than_it_is)
 {
-    (void)state;
     enum { DRAWS = 2000, READINGS = 1000 };
     struct bench b        = make(2e5, 0.0, 1e9);
     uint64_t     seed     = 3;
@@ -173,18 +166,4 @@ static void the_chance_is_no_smaller_than_it_is(void **state)
     }
     assert_true(least[0] <= 0.1 && least[1] <= 0.01);
     dig_machine_recording_finish(&b.recording);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_load_that_comes_and_goes_is_whole),
-        cmocka_unit_test(a_sensor_that_ends_is_named_with_its_limit),
-        cmocka_unit_test(a_return_side_may_stand_still),
-        cmocka_unit_test(a_sensor_that_ends_for_a_moment_is_named),
-        cmocka_unit_test(a_load_that_stands_still_without_noise_is_whole),
-        cmocka_unit_test(a_load_that_is_held_elsewhere_as_long_is_whole),
-        cmocka_unit_test(the_chance_is_no_smaller_than_it_is),
-    };
-    return cmocka_run_group_tests_name("clipped", tests, NULL, NULL);
 }

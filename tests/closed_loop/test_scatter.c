@@ -53,9 +53,8 @@ static struct dig_response_surface *make_surface(struct dig_curve_set **const se
     return surface;
 }
 
-static void a_known_covariance_is_found(void **state)
+TEST(a_known_covariance_is_found)
 {
-    (void)state;
     struct dig_curve_set        *set;
     struct dig_response_surface *surface = make_surface(&set);
     struct dig_scatter          *s       = pooled(surface, 0.0);
@@ -74,9 +73,8 @@ static void a_known_covariance_is_found(void **state)
     made_table_destroy(set);
 }
 
-static void stronger_gravels_may_scatter_more(void **state)
+TEST(stronger_gravels_may_scatter_more)
 {
-    (void)state;
     struct dig_curve_set        *set;
     struct dig_response_surface *surface = make_surface(&set);
     struct dig_scatter          *s       = pooled(surface, 0.6);
@@ -89,9 +87,8 @@ static void stronger_gravels_may_scatter_more(void **state)
 }
 
 // Without second packings the curves' own standard deviation is all there is.
-static void a_table_without_runs_uses_its_curves(void **state)
+TEST(a_table_without_runs_uses_its_curves)
 {
-    (void)state;
     struct dig_curve_set        *set;
     struct dig_response_surface *surface = make_surface(&set);
     struct dig_scatter          *s       = NULL;
@@ -141,20 +138,8 @@ static double neighbours_of_few(const double alike)
     return correlation;
 }
 
-static void few_packings_say_how_alike_neighbours_are(void **state)
+TEST(few_packings_say_how_alike_neighbours_are)
 {
-    (void)state;
     assert_true(neighbours_of_few(0.95) > 0.85);
     assert_true(neighbours_of_few(0.0) < 0.55);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_known_covariance_is_found),
-        cmocka_unit_test(stronger_gravels_may_scatter_more),
-        cmocka_unit_test(a_table_without_runs_uses_its_curves),
-        cmocka_unit_test(few_packings_say_how_alike_neighbours_are),
-    };
-    return cmocka_run_group_tests_name("scatter", tests, NULL, NULL);
 }

@@ -17,9 +17,8 @@ static void fill(double curve[], const double value)
     }
 }
 
-static void a_constant_shortfall_is_its_own_fraction(void **state)
+TEST(a_constant_shortfall_is_its_own_fraction)
 {
-    (void)state;
     double measured[DIG_CURVE_POINTS], predicted[DIG_CURVE_POINTS], sigma[DIG_CURVE_POINTS];
     fill(measured, 4.0);
     fill(predicted, 3.0);
@@ -34,9 +33,8 @@ static void a_constant_shortfall_is_its_own_fraction(void **state)
 
 // The drag takes two thirds of the time but half of the path: an error over the drag alone must
 // weigh sqrt(2/3), and sqrt(1/2) would be a score over path.
-static void time_is_what_is_integrated_over_not_path(void **state)
+TEST(time_is_what_is_integrated_over_not_path)
 {
-    (void)state;
     double measured[DIG_CURVE_POINTS], predicted[DIG_CURVE_POINTS], sigma[DIG_CURVE_POINTS];
     fill(measured, 1.0);
     fill(sigma, 0.0);
@@ -48,9 +46,8 @@ static void time_is_what_is_integrated_over_not_path(void **state)
     assert_close(dig_score_error(&score), sqrt(2.0 / 3.0), 3e-3);
 }
 
-static void only_the_range_between_contact_and_exit_counts(void **state)
+TEST(only_the_range_between_contact_and_exit_counts)
 {
-    (void)state;
     double measured[DIG_CURVE_POINTS], predicted[DIG_CURVE_POINTS], sigma[DIG_CURVE_POINTS];
     fill(measured, 1.0);
     fill(sigma, 0.0);
@@ -63,9 +60,8 @@ static void only_the_range_between_contact_and_exit_counts(void **state)
 }
 
 // Two digs: squares are summed before the root, so the larger dig weighs more.
-static void digs_are_pooled_by_their_squares(void **state)
+TEST(digs_are_pooled_by_their_squares)
 {
-    (void)state;
     double m1[DIG_CURVE_POINTS], m2[DIG_CURVE_POINTS], zero[DIG_CURVE_POINTS];
     fill(m1, 3.0);
     fill(m2, 4.0);
@@ -74,15 +70,4 @@ static void digs_are_pooled_by_their_squares(void **state)
     dig_score_add(&score, &drag_and_lift, 0.09, 0.0, 1.0, m1, zero, zero);
     dig_score_add(&score, &drag_and_lift, 0.09, 0.0, 1.0, m2, m2, zero);
     assert_close(dig_score_error(&score), 3.0 / 5.0, 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_constant_shortfall_is_its_own_fraction),
-        cmocka_unit_test(time_is_what_is_integrated_over_not_path),
-        cmocka_unit_test(only_the_range_between_contact_and_exit_counts),
-        cmocka_unit_test(digs_are_pooled_by_their_squares),
-    };
-    return cmocka_run_group_tests_name("score", tests, NULL, NULL);
 }

@@ -85,9 +85,8 @@ static bool in_a_set(const struct dig_search *const s, const enum dig_effect_id 
 
 // Twelve campaigns without an effect: two false alarms at one in a hundred come once in a hundred
 // and fifty.
-static void nothing_is_found_where_nothing_is(void **state)
+TEST(nothing_is_found_where_nothing_is)
 {
-    (void)state;
     uint64_t seed   = 21;
     int      alarms = 0;
     for (int i = 0; i < 12; i++) {
@@ -100,9 +99,8 @@ static void nothing_is_found_where_nothing_is(void **state)
     assert_true(alarms <= 1);
 }
 
-static void an_effect_is_named_and_measured(void **state)
+TEST(an_effect_is_named_and_measured)
 {
-    (void)state;
     static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION,
                                                  DIG_EFFECT_GROUND_SLOPE, DIG_EFFECT_LAYERING };
     const struct dig_gravel         gravel   = { { 0.6, 0.55, 2500 } };
@@ -133,9 +131,8 @@ static void an_effect_is_named_and_measured(void **state)
     }
 }
 
-static void two_effects_at_once_are_both_named(void **state)
+TEST(two_effects_at_once_are_both_named)
 {
-    (void)state;
     const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
     const enum dig_effect_id effect[2] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION };
     const double             both[2]   = { 0.6, 0.7 };
@@ -153,9 +150,8 @@ static void two_effects_at_once_are_both_named(void **state)
 
 // A trend over four digs cannot be asked of a fifth: as a second effect it is not named. Over six
 // it is.
-static void a_second_effect_that_no_dig_confirms_is_not_named(void **state)
+TEST(a_second_effect_that_no_dig_confirms_is_not_named)
 {
-    (void)state;
     const struct dig_gravel  gravel  = { { 0.6, 0.55, 2500 } };
     const enum dig_effect_id layer[] = { DIG_EFFECT_LAYERING };
     const double             much[]  = { 0.8 };
@@ -175,9 +171,8 @@ static void a_second_effect_that_no_dig_confirms_is_not_named(void **state)
     assert_int_equal(six.chosen.hypothesis.effects, 2);
 }
 
-static void what_has_no_name_gets_none(void **state)
+TEST(what_has_no_name_gets_none)
 {
-    (void)state;
     const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
     const enum dig_effect_id dip       = DIG_EFFECT_UNLISTED;
     const double             magnitude = 0.8;
@@ -188,9 +183,8 @@ static void what_has_no_name_gets_none(void **state)
     assert_true(s.without_name.functions > 0);
 }
 
-static void a_gravel_beyond_the_grid_is_no_effect(void **state)
+TEST(a_gravel_beyond_the_grid_is_no_effect)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.25, 0.05, 1200 } };
     const struct dig_search s      = search(&gravel, 0, NULL, NULL, 9);
     assert_true(!s.significant || s.outside);
@@ -198,9 +192,8 @@ static void a_gravel_beyond_the_grid_is_no_effect(void **state)
     assert_false(s.unlisted);
 }
 
-static void the_same_seed_gives_the_same_answer(void **state)
+TEST(the_same_seed_gives_the_same_answer)
 {
-    (void)state;
     const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
     const enum dig_effect_id effect    = DIG_EFFECT_LAYERING;
     const double             magnitude = 0.3;
@@ -220,9 +213,8 @@ static bool names(const struct dig_search *const s, const enum dig_effect_id eff
 }
 
 // However lightly one takes something to be missing: plain digs do not decide for an effect.
-static void no_effect_is_named_that_is_not_decisive(void **state)
+TEST(no_effect_is_named_that_is_not_decisive)
 {
-    (void)state;
     const struct dig_gravel gravel  = { { 0.6, 0.55, 2500 } };
     uint64_t                seed    = 40;
     int                     tempted = 0;
@@ -241,9 +233,8 @@ static void no_effect_is_named_that_is_not_decisive(void **state)
 
 // Digs that grow by a tenth each wear the tooth; one that is far off at the end of equal ones is
 // fitted by a trend, too, but a trend through the others does not foretell it.
-static void a_trend_must_foretell_the_digs_left_out(void **state)
+TEST(a_trend_must_foretell_the_digs_left_out)
 {
-    (void)state;
     static const double     growth[2][DIGS] = { { 1.0, 1.1, 1.2, 1.3, 1.4, 1.5 },
                                                 { 1.0, 1.0, 1.0, 1.0, 1.0, 1.5 } };
     const struct dig_gravel gravel          = { { 0.6, 0.55, 2500 } };
@@ -259,9 +250,8 @@ static void a_trend_must_foretell_the_digs_left_out(void **state)
 }
 
 // A strength that comes to rest, or steps once, drifts from dig to dig as no tooth wears.
-static void a_drift_that_bends_is_no_wear(void **state)
+TEST(a_drift_that_bends_is_no_wear)
 {
-    (void)state;
     static const double     growth[3][DIGS] = { { 1.0, 1.15, 1.3, 1.45, 1.6, 1.75 },
                                                 { 1.0, 1.5, 1.75, 1.85, 1.9, 1.92 },
                                                 { 1.0, 1.0, 1.0, 1.0, 1.6, 1.6 } };
@@ -285,9 +275,8 @@ static void a_drift_that_bends_is_no_wear(void **state)
 
 // A single effect whose fit stopped short leaves what a second effect takes off: before the pair is
 // believed the single one is fitted again from where the pair has led.
-static void a_pair_does_not_lead_for_having_been_fitted_better(void **state)
+TEST(a_pair_does_not_lead_for_having_been_fitted_better)
 {
-    (void)state;
     const struct dig_gravel  gravel    = { { 0.6, 0.55, 2500 } };
     const enum dig_effect_id slope     = DIG_EFFECT_GROUND_SLOPE;
     const double             magnitude = 0.5;
@@ -339,9 +328,8 @@ static struct dig_steps open_beside(const struct dig_gravel *const gravel)
 
 // What is open of a machine is fitted with every hypothesis, so that it is neither an effect of the
 // soil nor hides one.
-static void what_is_open_of_the_machine_is_no_effect_of_the_soil(void **state)
+TEST(what_is_open_of_the_machine_is_no_effect_of_the_soil)
 {
-    (void)state;
     static const enum dig_effect_id slope = DIG_EFFECT_GROUND_SLOPE;
     static struct dig_search        found;
     const struct dig_gravel         gravel    = { { 0.6, 0.55, 2500 } };
@@ -376,21 +364,4 @@ static void what_is_open_of_the_machine_is_no_effect_of_the_soil(void **state)
     assert_int_equal(alarms[1], 6); // or the test would say nothing
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_is_found_where_nothing_is),
-        cmocka_unit_test(an_effect_is_named_and_measured),
-        cmocka_unit_test(two_effects_at_once_are_both_named),
-        cmocka_unit_test(a_second_effect_that_no_dig_confirms_is_not_named),
-        cmocka_unit_test(what_has_no_name_gets_none),
-        cmocka_unit_test(a_gravel_beyond_the_grid_is_no_effect),
-        cmocka_unit_test(the_same_seed_gives_the_same_answer),
-        cmocka_unit_test(no_effect_is_named_that_is_not_decisive),
-        cmocka_unit_test(a_drift_that_bends_is_no_wear),
-        cmocka_unit_test(a_trend_must_foretell_the_digs_left_out),
-        cmocka_unit_test(a_pair_does_not_lead_for_having_been_fitted_better),
-        cmocka_unit_test(what_is_open_of_the_machine_is_no_effect_of_the_soil),
-    };
-    return cmocka_run_group_tests_name("search", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

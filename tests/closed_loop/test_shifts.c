@@ -44,9 +44,8 @@ static double size_of(const double shift[DIG_FEATURES])
     return sqrt(sum);
 }
 
-static void a_plain_gravel_is_off_along_its_axes_alone(void **state)
+TEST(a_plain_gravel_is_off_along_its_axes_alone)
 {
-    (void)state;
     const struct dig_hypothesis plain                          = { .effects = 0 };
     double                      number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     double                      sigma[DIG_HYPOTHESIS_NUMBERS];
@@ -62,9 +61,8 @@ static void a_plain_gravel_is_off_along_its_axes_alone(void **state)
 }
 
 // Of half the steps between two values, by the square of that.
-static void a_table_of_fewer_values_is_off_by_more(void **state)
+TEST(a_table_of_fewer_values_is_off_by_more)
 {
-    (void)state;
     const struct dig_hypothesis       plain                          = { .effects = 0 };
     double                            number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     const struct dig_curve_set *const many                           = world.surface->set;
@@ -86,9 +84,8 @@ static void a_table_of_fewer_values_is_off_by_more(void **state)
     assert_close(more[DIG_AXIS_DENSITY_kgpm3], 1.0, 1e-12);
 }
 
-static void an_effect_is_off_by_what_it_adds(void **state)
+TEST(an_effect_is_off_by_what_it_adds)
 {
-    (void)state;
     const struct dig_hypothesis slope = { .effects = 1, .effect = { DIG_EFFECT_GROUND_SLOPE } };
     double                      number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     double                      size[2], of_u[2], sigma[2][DIG_HYPOTHESIS_NUMBERS];
@@ -117,12 +114,4 @@ static void an_effect_is_off_by_what_it_adds(void **state)
     assert_int_equal(shifts.shifts, DIG_AXES);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plain_gravel_is_off_along_its_axes_alone),
-        cmocka_unit_test(a_table_of_fewer_values_is_off_by_more),
-        cmocka_unit_test(an_effect_is_off_by_what_it_adds),
-    };
-    return cmocka_run_group_tests_name("shifts", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

@@ -15,9 +15,8 @@ static void plain_at(const struct dig_gravel *const gravel, const size_t t, doub
 
 // What the made world puts in at half its largest magnitude comes out, at a gravel that is none of
 // the bases; adhesion acts by its ratio to the grains' weight.
-static void a_template_gives_back_what_was_put_in(void **state)
+TEST(a_template_gives_back_what_was_put_in)
 {
-    (void)state;
     static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_GROUND_SLOPE,
                                                  DIG_EFFECT_LAYERING };
     const struct dig_gravel         gravel   = { { 0.6, 0.5, 2500 } };
@@ -52,9 +51,8 @@ static void a_template_gives_back_what_was_put_in(void **state)
 // The made effects are proportional to the magnitude and alike in all gravels: the terms that say
 // otherwise are drawn to nothing, and the variance of what is known of the effect is of the order
 // of what one term alone would have from all beds. Five free terms have nine times as much.
-static void terms_that_the_beds_do_not_ask_for_bring_no_noise(void **state)
+TEST(terms_that_the_beds_do_not_ask_for_bring_no_noise)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
     for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
         double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
@@ -74,9 +72,8 @@ static void terms_that_the_beds_do_not_ask_for_bring_no_noise(void **state)
 }
 
 // What a layer of another material adds is a multiple, in features and curves alike.
-static void a_contrast_multiplies_what_a_template_adds(void **state)
+TEST(a_contrast_multiplies_what_a_template_adds)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
     double                  place[DIG_AXES], plain[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
     double                  bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
@@ -104,9 +101,8 @@ static void a_contrast_multiplies_what_a_template_adds(void **state)
     assert_close(noise[1], 0.16 * noise[0], 1e-12);
 }
 
-static void an_effect_that_is_absent_adds_nothing(void **state)
+TEST(an_effect_that_is_absent_adds_nothing)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
     for (int e = 0; e < DIG_EFFECTS; e++) {
         if (dig_effect_is_of_machine((enum dig_effect_id)e) ||
@@ -125,9 +121,8 @@ static void an_effect_that_is_absent_adds_nothing(void **state)
     }
 }
 
-static void features_are_those_of_the_curve(void **state)
+TEST(features_are_those_of_the_curve)
 {
-    (void)state;
     static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_RATE_DEPENDENCE,
                                                  DIG_EFFECT_WEAR };
     const struct dig_gravel         gravel   = { { 0.5, 0.7, 3000 } };
@@ -151,9 +146,8 @@ static void features_are_those_of_the_curve(void **state)
 }
 
 // Over a bin the factor is that of its mean speed: 1 % of the dig's size for a strong dependence.
-static void the_tooths_speed_tells_features_as_it_tells_the_curve(void **state)
+TEST(the_tooths_speed_tells_features_as_it_tells_the_curve)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.5, 0.7, 3000 } };
     double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
     double noise = 0.0, of_curve[DIG_FEATURES];
@@ -178,9 +172,8 @@ static void the_tooths_speed_tells_features_as_it_tells_the_curve(void **state)
     assert_true(most > 0.05);
 }
 
-static void digs_differ_by_pass_pace_and_order(void **state)
+TEST(digs_differ_by_pass_pace_and_order)
 {
-    (void)state;
     const struct dig_measured dig = { .pass = 3, .pace = 2.0, .order = 5 };
     assert_close(dig_soil_share(DIG_EFFECT_COMPACTION, &dig), 2.0, 0.0);
     assert_close(dig_soil_share(DIG_EFFECT_RATE_DEPENDENCE, &dig), log(2.0), 1e-15);
@@ -188,9 +181,8 @@ static void digs_differ_by_pass_pace_and_order(void **state)
     assert_close(dig_soil_share(DIG_EFFECT_COHESION, &dig), 1.0, 0.0);
 }
 
-static void another_scene_is_refused_and_writes_nothing(void **state)
+TEST(another_scene_is_refused_and_writes_nothing)
 {
-    (void)state;
     struct dig_soil *untouched = soil;
     world.effects->scene_hash[0] ^= 1;
     assert_int_equal(dig_soil_create(world.surface, world.effects, world.scatter, &untouched),
@@ -199,9 +191,8 @@ static void another_scene_is_refused_and_writes_nothing(void **state)
     assert_ptr_equal(untouched, soil);
 }
 
-static void without_beds_only_the_reduced_forms_are_known(void **state)
+TEST(without_beds_only_the_reduced_forms_are_known)
 {
-    (void)state;
     struct dig_soil *bare = NULL;
     assert_int_equal(dig_soil_create(world.surface, NULL, NULL, &bare), DIG_OK);
     assert_false(dig_soil_knows(bare, DIG_EFFECT_COHESION, 0));
@@ -210,18 +201,4 @@ static void without_beds_only_the_reduced_forms_are_known(void **state)
     free(bare);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_template_gives_back_what_was_put_in),
-        cmocka_unit_test(terms_that_the_beds_do_not_ask_for_bring_no_noise),
-        cmocka_unit_test(a_contrast_multiplies_what_a_template_adds),
-        cmocka_unit_test(an_effect_that_is_absent_adds_nothing),
-        cmocka_unit_test(features_are_those_of_the_curve),
-        cmocka_unit_test(the_tooths_speed_tells_features_as_it_tells_the_curve),
-        cmocka_unit_test(digs_differ_by_pass_pace_and_order),
-        cmocka_unit_test(another_scene_is_refused_and_writes_nothing),
-        cmocka_unit_test(without_beds_only_the_reduced_forms_are_known),
-    };
-    return cmocka_run_group_tests_name("soil", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

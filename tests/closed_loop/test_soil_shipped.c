@@ -80,9 +80,8 @@ static double left_of(const size_t entry, const size_t t)
 
 // A template's straight lines from magnitude to magnitude leave no more of the beds than their
 // scatter, where a parabola left three times it.
-static void templates_follow_the_beds_that_ship(void **state)
+TEST(templates_follow_the_beds_that_ship)
 {
-    (void)state;
     double sum[DIG_EFFECTS]   = { 0.0 };
     double count[DIG_EFFECTS] = { 0.0 };
     for (size_t e = 0; e < effects->entries; e++) {
@@ -104,9 +103,8 @@ static void templates_follow_the_beds_that_ship(void **state)
 }
 
 // Under one gravel a hard layer adds to the moment of actual and a loose one takes off.
-static void a_hard_layer_adds_and_a_loose_one_takes(void **state)
+TEST(a_hard_layer_adds_and_a_loose_one_takes)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.7, 0.4, 3000.0 } };
     const size_t            actual = 2;
     assert_string_equal(set->trajectory[actual].name, "actual");
@@ -127,9 +125,8 @@ static void a_hard_layer_adds_and_a_loose_one_takes(void **state)
 
 // A bucket has some friction or none: no fit goes beyond, and the smoother it is the less it
 // resists.
-static void a_smoother_bucket_takes_off_the_moment_down_to_no_friction(void **state)
+TEST(a_smoother_bucket_takes_off_the_moment_down_to_no_friction)
 {
-    (void)state;
     const struct dig_gravel  gravel = { { 0.6, 0.4, 2500.0 } };
     const enum dig_effect_id effect = DIG_EFFECT_BUCKET_FRICTION;
     assert_close(dig_soil_magnitude(soil, effect, soil->low[effect]), 0.0, 0.0);
@@ -154,12 +151,4 @@ static void a_smoother_bucket_takes_off_the_moment_down_to_no_friction(void **st
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(templates_follow_the_beds_that_ship),
-        cmocka_unit_test(a_hard_layer_adds_and_a_loose_one_takes),
-        cmocka_unit_test(a_smoother_bucket_takes_off_the_moment_down_to_no_friction),
-    };
-    return cmocka_run_group_tests_name("soil_shipped", tests, load, unload);
-}
+TESTS_WITH(load, unload)

@@ -17,9 +17,8 @@ static struct dig_soil_template choose(const size_t beds)
     return template;
 }
 
-static void two_gravels_bend_at_their_magnitudes_and_one_does_not(void **state)
+TEST(two_gravels_bend_at_their_magnitudes_and_one_does_not)
 {
-    (void)state;
     const struct dig_soil_template t = choose(5);
     assert_int_equal(t.powers, 2);
     assert_int_equal(t.knots, 3);
@@ -30,9 +29,8 @@ static void two_gravels_bend_at_their_magnitudes_and_one_does_not(void **state)
 }
 
 // At the stronger gravel, where s is 1: every shape stands twice.
-static void hats_are_straight_between_magnitudes_and_go_on_beyond(void **state)
+TEST(hats_are_straight_between_magnitudes_and_go_on_beyond)
 {
-    (void)state;
     static const struct {
         double u, half, one; // where, and the two hats there
     } known[]                        = { { 0.0, 0.0, 0.0 },  { 0.25, 0.5, 0.0 }, { 0.5, 1.0, 0.0 },
@@ -51,9 +49,8 @@ static void hats_are_straight_between_magnitudes_and_go_on_beyond(void **state)
     }
 }
 
-static void a_gravel_changes_no_more_far_beyond_the_strongest(void **state)
+TEST(a_gravel_changes_no_more_far_beyond_the_strongest)
 {
-    (void)state;
     const struct dig_soil_template t = choose(5);
     double                         far[DIG_SOIL_TERMS], farther[DIG_SOIL_TERMS];
     memset(far, 0, sizeof far);
@@ -64,23 +61,11 @@ static void a_gravel_changes_no_more_far_beyond_the_strongest(void **state)
     assert_true(far[1] > 1.0);
 }
 
-static void one_bed_is_a_straight_line(void **state)
+TEST(one_bed_is_a_straight_line)
 {
-    (void)state;
     const struct dig_soil_template t = choose(1);
     assert_int_equal(t.terms, 1);
     double term[DIG_SOIL_TERMS] = { 0.0 };
     dig_soil_terms(&t, 0.3, 7.0, term);
     assert_close(term[0], 0.3, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_gravels_bend_at_their_magnitudes_and_one_does_not),
-        cmocka_unit_test(hats_are_straight_between_magnitudes_and_go_on_beyond),
-        cmocka_unit_test(a_gravel_changes_no_more_far_beyond_the_strongest),
-        cmocka_unit_test(one_bed_is_a_straight_line),
-    };
-    return cmocka_run_group_tests_name("soil_terms", tests, NULL, NULL);
 }

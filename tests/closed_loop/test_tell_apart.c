@@ -90,9 +90,8 @@ static double of_the_whole(const double share, const size_t trajectory)
     return sqrt(sum);
 }
 
-static void what_differs_at_speed_alone_is_told_by_digging_faster(void **state)
+TEST(what_differs_at_speed_alone_is_told_by_digging_faster)
 {
-    (void)state;
     const enum dig_effect_id effect[] = { DIG_EFFECT_RATE_DEPENDENCE, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.3, 0.0 };
     soil->along                       = 0.0;
@@ -110,9 +109,8 @@ static void what_differs_at_speed_alone_is_told_by_digging_faster(void **state)
                  0.0);
 }
 
-static void what_grows_with_the_digs_is_told_by_later_ones(void **state)
+TEST(what_grows_with_the_digs_is_told_by_later_ones)
 {
-    (void)state;
     const enum dig_effect_id effect[] = { DIG_EFFECT_WEAR, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.02, 0.0 };
     tell(3, 2, effect, u);
@@ -120,9 +118,8 @@ static void what_grows_with_the_digs_is_told_by_later_ones(void **state)
 }
 
 // Adhesion of the made world shows in Fz alone.
-static void what_is_not_measured_tells_nothing(void **state)
+TEST(what_is_not_measured_tells_nothing)
 {
-    (void)state;
     const enum dig_effect_id effect[] = { DIG_EFFECT_ADHESION, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.8, 0.0 };
     tell(3, 2, effect, u);
@@ -133,9 +130,8 @@ static void what_is_not_measured_tells_nothing(void **state)
 }
 
 // In the made world the slope is felt along the real dig by 0.6 of what it is along the others.
-static void what_differs_in_one_dig_is_told_by_that(void **state)
+TEST(what_differs_in_one_dig_is_told_by_that)
 {
-    (void)state;
     const enum dig_effect_id effect[] = { DIG_EFFECT_GROUND_SLOPE, DIG_EFFECT_COHESION,
                                           DIG_EFFECT_ADHESION };
     const double             u[]      = { 0.8, 0.0, 0.0 };
@@ -158,9 +154,8 @@ static void what_differs_in_one_dig_is_told_by_that(void **state)
     assert_string_equal(text, "ground_");
 }
 
-static void there_is_room_for_so_many_pairs(void **state)
+TEST(there_is_room_for_so_many_pairs)
 {
-    (void)state;
     const struct dig_trace_work t = { .set = world.set, .search = search, .digs = DIGS };
     memset(search, 0, sizeof *search);
     memset(trace, 0, sizeof *trace);
@@ -175,14 +170,4 @@ static void there_is_room_for_so_many_pairs(void **state)
     assert_string_equal(trace->tell[0].how, "");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_differs_at_speed_alone_is_told_by_digging_faster),
-        cmocka_unit_test(what_grows_with_the_digs_is_told_by_later_ones),
-        cmocka_unit_test(what_is_not_measured_tells_nothing),
-        cmocka_unit_test(what_differs_in_one_dig_is_told_by_that),
-        cmocka_unit_test(there_is_room_for_so_many_pairs),
-    };
-    return cmocka_run_group_tests_name("tell_apart", tests, make, clean);
-}
+TESTS_WITH(make, clean)

@@ -36,9 +36,8 @@ static enum dig_status run(struct dig_trace *const trace, struct dig_error *cons
                          error);
 }
 
-static void adding_the_effect_makes_the_holdout_better(void **state)
+TEST(adding_the_effect_makes_the_holdout_better)
 {
-    (void)state;
     struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_LAYERING, 0.8, 31);
     assert_int_equal(run(&trace, NULL), DIG_OK);
@@ -59,9 +58,8 @@ static void adding_the_effect_makes_the_holdout_better(void **state)
 
 // Of two holdouts: the root of the mean square of their own errors, as near as they are of one
 // size.
-static void what_is_left_is_told_dig_by_dig(void **state)
+TEST(what_is_left_is_told_dig_by_dig)
 {
-    (void)state;
     struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_COHESION, 0.8, 31);
     (void)snprintf(measured[5].name, sizeof measured[5].name, "five.csv");
@@ -97,9 +95,8 @@ static void what_is_left_is_told_dig_by_dig(void **state)
     dig_trace_finish(&trace);
 }
 
-static void without_an_effect_before_and_after_are_the_same(void **state)
+TEST(without_an_effect_before_and_after_are_the_same)
 {
-    (void)state;
     struct dig_trace trace;
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 32);
     assert_int_equal(run(&trace, NULL), DIG_OK);
@@ -114,9 +111,8 @@ static void without_an_effect_before_and_after_are_the_same(void **state)
     dig_trace_finish(&trace);
 }
 
-static void what_has_no_name_is_corrected_all_the_same(void **state)
+TEST(what_has_no_name_is_corrected_all_the_same)
 {
-    (void)state;
     struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
     assert_int_equal(run(&trace, NULL), DIG_OK);
@@ -129,9 +125,8 @@ static void what_has_no_name_is_corrected_all_the_same(void **state)
 }
 
 // Without a name as with one: no more than even odds are claimed for what the moment hardly shows.
-static void what_the_moment_does_not_show_is_not_claimed(void **state)
+TEST(what_the_moment_does_not_show_is_not_claimed)
 {
-    (void)state;
     struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
     assert_int_equal(run(&trace, NULL), DIG_OK);
@@ -156,9 +151,8 @@ static void what_the_moment_does_not_show_is_not_claimed(void **state)
 }
 
 // What the machine adds is taken off the digs and put back on the prediction.
-static void the_machines_share_is_the_machines(void **state)
+TEST(the_machines_share_is_the_machines)
 {
-    (void)state;
     struct dig_trace plain, shifted;
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 34);
     assert_int_equal(run(&plain, NULL), DIG_OK);
@@ -180,9 +174,8 @@ static void the_machines_share_is_the_machines(void **state)
     dig_trace_finish(&shifted);
 }
 
-static void too_few_digs_are_refused_and_nothing_is_written(void **state)
+TEST(too_few_digs_are_refused_and_nothing_is_written)
 {
-    (void)state;
     struct dig_trace trace = { .digs = 42 };
     struct dig_error error = { "" };
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 35);
@@ -197,9 +190,8 @@ static void too_few_digs_are_refused_and_nothing_is_written(void **state)
     assert_int_equal(trace.digs, 42);
 }
 
-static void another_scenes_effects_are_refused(void **state)
+TEST(another_scenes_effects_are_refused)
 {
-    (void)state;
     struct dig_trace trace = { .digs = 42 };
     struct dig_error error = { "" };
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 36);
@@ -211,9 +203,8 @@ static void another_scenes_effects_are_refused(void **state)
 }
 
 // A dig held out decides nothing: another holdout, the same verdict and gravel.
-static void the_holdout_is_for_the_error_alone(void **state)
+TEST(the_holdout_is_for_the_error_alone)
 {
-    (void)state;
     struct dig_trace a, b;
     dig_campaign(1, DIG_EFFECT_LAYERING, 0.6, 37);
     assert_int_equal(run(&a, NULL), DIG_OK);
@@ -230,9 +221,8 @@ static void the_holdout_is_for_the_error_alone(void **state)
 
 // No effect competes there, not even wear: that digs are like none of the table is found all the
 // same.
-static void without_a_table_of_effects_strange_digs_are_found(void **state)
+TEST(without_a_table_of_effects_strange_digs_are_found)
 {
-    (void)state;
     struct dig_trace_settings settings = dig_trace_settings_default();
     struct dig_trace          trace;
     struct dig_error          error = { "" };
@@ -256,19 +246,4 @@ static void without_a_table_of_effects_strange_digs_are_found(void **state)
     dig_trace_finish(&trace);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(adding_the_effect_makes_the_holdout_better),
-        cmocka_unit_test(what_is_left_is_told_dig_by_dig),
-        cmocka_unit_test(without_an_effect_before_and_after_are_the_same),
-        cmocka_unit_test(what_has_no_name_is_corrected_all_the_same),
-        cmocka_unit_test(what_the_moment_does_not_show_is_not_claimed),
-        cmocka_unit_test(the_machines_share_is_the_machines),
-        cmocka_unit_test(too_few_digs_are_refused_and_nothing_is_written),
-        cmocka_unit_test(another_scenes_effects_are_refused),
-        cmocka_unit_test(the_holdout_is_for_the_error_alone),
-        cmocka_unit_test(without_a_table_of_effects_strange_digs_are_found),
-    };
-    return cmocka_run_group_tests_name("trace", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

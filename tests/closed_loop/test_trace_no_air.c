@@ -50,9 +50,8 @@ static bool is_confirmed(struct dig_trace_work *const w)
     return w->confirmed;
 }
 
-static void what_predicts_the_digs_left_out_is_confirmed(void **state)
+TEST(what_predicts_the_digs_left_out_is_confirmed)
 {
-    (void)state;
     struct dig_trace_work w = work(4);
     assert_true(is_confirmed(&w));
     // One that says of every dig what no effect says predicts none better.
@@ -66,9 +65,8 @@ static void what_predicts_the_digs_left_out_is_confirmed(void **state)
     assert_true(is_confirmed(&w));
 }
 
-static void without_a_name_a_second_dig_of_a_trajectory_is_asked_for(void **state)
+TEST(without_a_name_a_second_dig_of_a_trajectory_is_asked_for)
 {
-    (void)state;
     struct dig_trace_work w = work(3);
     search.unlisted         = true;
     assert_true(is_confirmed(&w));
@@ -77,9 +75,8 @@ static void without_a_name_a_second_dig_of_a_trajectory_is_asked_for(void **stat
     assert_false(is_confirmed(&w));
 }
 
-static void the_advice_begins_with_the_air_that_is_missing(void **state)
+TEST(the_advice_begins_with_the_air_that_is_missing)
 {
-    (void)state;
     const struct dig_trace_work w     = work(2);
     struct dig_trace            trace = { .advice = "a table would serve" };
     dig_trace_advise_on_air(&w, &trace);
@@ -94,12 +91,4 @@ static void the_advice_begins_with_the_air_that_is_missing(void **state)
     assert_string_equal(trace.advice, "as it was");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_predicts_the_digs_left_out_is_confirmed),
-        cmocka_unit_test(without_a_name_a_second_dig_of_a_trajectory_is_asked_for),
-        cmocka_unit_test(the_advice_begins_with_the_air_that_is_missing),
-    };
-    return cmocka_run_group_tests_name("trace_no_air", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

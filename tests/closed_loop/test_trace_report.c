@@ -202,9 +202,8 @@ static void expect(const char *const text, const char *const key, const char *co
     yaml_document_delete(&document);
 }
 
-static void json_is_the_documented_example(void **state)
+TEST(json_is_the_documented_example)
 {
-    (void)state;
     struct example *const e    = make();
     char *const           text = json_of(&e->trace);
     size_t                size = 0;
@@ -216,9 +215,8 @@ static void json_is_the_documented_example(void **state)
 }
 
 // The keys people script against, each where the contract has it.
-static void json_holds_the_keys_of_the_contract(void **state)
+TEST(json_holds_the_keys_of_the_contract)
 {
-    (void)state;
     struct example *const e    = make();
     char *const           text = json_of(&e->trace);
     expect(text, "significant", "true");
@@ -251,9 +249,8 @@ static void json_holds_the_keys_of_the_contract(void **state)
     drop(e);
 }
 
-static void no_effect_is_the_verdict_none_and_no_holdout_is_null(void **state)
+TEST(no_effect_is_the_verdict_none_and_no_holdout_is_null)
 {
-    (void)state;
     struct dig_trace trace = { .before = { (double)NAN, (double)NAN, (double)NAN },
                                .after  = { (double)NAN, (double)NAN, (double)NAN } };
     char *const      text  = json_of(&trace);
@@ -271,18 +268,16 @@ static void no_effect_is_the_verdict_none_and_no_holdout_is_null(void **state)
     free(blind);
 }
 
-static void control_characters_stay_inside_a_json_string(void **state)
+TEST(control_characters_stay_inside_a_json_string)
 {
-    (void)state;
     struct dig_trace trace = { .advice = "a\nb\\c" };
     char *const      text  = json_of(&trace);
     assert_contains(text, "\"advice\": \"a\\u000ab\\\\c\"");
     free(text);
 }
 
-static void a_sentence_says_the_verdict(void **state)
+TEST(a_sentence_says_the_verdict)
 {
-    (void)state;
     char                  text[1024];
     struct example *const e = make();
     dig_trace_sentence(&e->trace, sizeof text, text);
@@ -308,9 +303,8 @@ static void a_sentence_says_the_verdict(void **state)
     drop(e);
 }
 
-static void the_terminal_gets_parameters_sets_errors_and_advice(void **state)
+TEST(the_terminal_gets_parameters_sets_errors_and_advice)
 {
-    (void)state;
     struct example *const e    = make();
     const char *const     path = scratch_path("trace.txt");
     FILE *const           file = fopen(path, "w");
@@ -353,9 +347,8 @@ static enum dig_status write_page(const struct example *const e, const char *con
 
 // What a person knows of a bucket is its friction, not what it lacks; of a layer how hard it
 // resists. Whether the prediction was changed or not.
-static void effects_are_told_by_what_people_know_of_them(void **state)
+TEST(effects_are_told_by_what_people_know_of_them)
 {
-    (void)state;
     struct example *const e    = make();
     const char *const     path = scratch_path("bucket.txt");
     FILE *const           file = fopen(path, "w");
@@ -397,9 +390,8 @@ static void effects_are_told_by_what_people_know_of_them(void **state)
 }
 
 // A change that was not made is told in every form of the report.
-static void what_is_named_and_not_applied_is_told(void **state)
+TEST(what_is_named_and_not_applied_is_told)
 {
-    (void)state;
     struct example *const e     = make();
     struct dig_error      error = { "" };
     const char *const     path  = scratch_path("refused.txt");
@@ -431,9 +423,8 @@ static void what_is_named_and_not_applied_is_told(void **state)
     drop(e);
 }
 
-static void the_page_stands_alone_and_draws_every_dig(void **state)
+TEST(the_page_stands_alone_and_draws_every_dig)
 {
-    (void)state;
     struct example *const e     = make();
     const char *const     path  = scratch_path("trace.html");
     struct dig_error      error = { "" };
@@ -480,9 +471,8 @@ static void the_page_stands_alone_and_draws_every_dig(void **state)
     drop(e);
 }
 
-static void no_folder_of_a_file_is_shown(void **state)
+TEST(no_folder_of_a_file_is_shown)
 {
-    (void)state;
     char        text[128] = "";
     FILE *const to        = fmemopen(text, sizeof text, "w");
     dig_html_without_folders(to, "a / b: /home/x y/run.csv, cp /home/x/g.yaml -o=/tmp/a/ ../t.csv");
@@ -490,9 +480,8 @@ static void no_folder_of_a_file_is_shown(void **state)
     assert_string_equal(text, "a / b: x run.csv, cp g.yaml -o=a t.csv");
 }
 
-static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
+TEST(a_trace_without_holdout_or_findings_has_a_page_too)
 {
-    (void)state;
     struct example *const e     = make();
     struct dig_error      error = { "" };
     const char *const     path  = scratch_path("plain.html");
@@ -516,20 +505,4 @@ static void a_trace_without_holdout_or_findings_has_a_page_too(void **state)
     drop(e);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(json_is_the_documented_example),
-        cmocka_unit_test(json_holds_the_keys_of_the_contract),
-        cmocka_unit_test(no_effect_is_the_verdict_none_and_no_holdout_is_null),
-        cmocka_unit_test(control_characters_stay_inside_a_json_string),
-        cmocka_unit_test(a_sentence_says_the_verdict),
-        cmocka_unit_test(the_terminal_gets_parameters_sets_errors_and_advice),
-        cmocka_unit_test(effects_are_told_by_what_people_know_of_them),
-        cmocka_unit_test(what_is_named_and_not_applied_is_told),
-        cmocka_unit_test(the_page_stands_alone_and_draws_every_dig),
-        cmocka_unit_test(no_folder_of_a_file_is_shown),
-        cmocka_unit_test(a_trace_without_holdout_or_findings_has_a_page_too),
-    };
-    return cmocka_run_group_tests_name("trace_report", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

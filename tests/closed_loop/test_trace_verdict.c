@@ -67,9 +67,8 @@ static double largest_correction(const struct dig_model_unlisted *const u)
 }
 
 // Whose it is, the soil's or the machine's, decides no more than the name.
-static void what_has_no_name_is_corrected_whatever_free_air_shows(void **state)
+TEST(what_has_no_name_is_corrected_whatever_free_air_shows)
 {
-    (void)state;
     const struct dig_trace_work t          = search(DIG_EFFECT_UNLISTED, 1.2);
     struct dig_machine_finding  air        = { .p_complete = 1.0 };
     struct dig_trace            understood = { 0 };
@@ -88,9 +87,8 @@ static void what_has_no_name_is_corrected_whatever_free_air_shows(void **state)
     free(strange.unlisted);
 }
 
-static void what_free_air_alone_shows_is_seen_in_the_air(void **state)
+TEST(what_free_air_alone_shows_is_seen_in_the_air)
 {
-    (void)state;
     const struct dig_trace_work      t     = search(DIG_EFFECT_LAYERING, 0.0);
     const struct dig_machine_finding air   = { .significant = true,
                                                .unexplained = true,
@@ -108,9 +106,8 @@ static void what_free_air_alone_shows_is_seen_in_the_air(void **state)
 }
 
 // What the digs do not confirm is claimed as far as they do, wherever it is seen.
-static void what_has_no_name_is_weighed(void **state)
+TEST(what_has_no_name_is_weighed)
 {
-    (void)state;
     const struct dig_machine_finding told    = { .p_complete = 1.0 };
     const struct dig_machine_finding strange = { .significant = true,
                                                  .unexplained = true,
@@ -134,9 +131,8 @@ static void what_has_no_name_is_weighed(void **state)
 }
 
 // Without free air what has a name may be the machine's as well as what has none.
-static void without_free_air_no_more_than_even_odds_are_claimed(void **state)
+TEST(without_free_air_no_more_than_even_odds_are_claimed)
 {
-    (void)state;
     const struct dig_machine_finding told  = { .p_complete = 1.0 };
     const struct dig_machine_finding none  = { .p_complete = 1.0, .no_air = true };
     struct dig_trace_work            t     = search(DIG_EFFECT_LAYERING, 0.8);
@@ -156,9 +152,8 @@ static void without_free_air_no_more_than_even_odds_are_claimed(void **state)
     free(trace.unlisted);
 }
 
-static void what_has_no_name_is_seen_where_the_residual_is_largest(void **state)
+TEST(what_has_no_name_is_seen_where_the_residual_is_largest)
 {
-    (void)state;
     const struct dig_trace_work      t   = search(DIG_EFFECT_UNLISTED, 1.2);
     const struct dig_machine_finding air = { .p_complete = 1.0 };
     const double                     gap = (double)NAN;
@@ -176,9 +171,8 @@ static void what_has_no_name_is_seen_where_the_residual_is_largest(void **state)
     }
 }
 
-static void both_sides_are_named_the_machine_first(void **state)
+TEST(both_sides_are_named_the_machine_first)
 {
-    (void)state;
     const struct dig_trace_work      t   = search(DIG_EFFECT_LAYERING, 0.8);
     const struct dig_machine_finding air = {
         .significant = true,
@@ -200,9 +194,8 @@ static void both_sides_are_named_the_machine_first(void **state)
 }
 
 // What free air shows with the digs' help only is not seen in it.
-static void a_machine_that_the_digs_show_is_seen_in_the_soil(void **state)
+TEST(a_machine_that_the_digs_show_is_seen_in_the_soil)
 {
-    (void)state;
     const struct dig_trace_work      t   = search(DIG_EFFECT_LAYERING, 0.0);
     const struct dig_machine_finding air = {
         .significant = true,
@@ -217,9 +210,8 @@ static void a_machine_that_the_digs_show_is_seen_in_the_soil(void **state)
     assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
 }
 
-static void a_strange_machine_leaves_the_soil_without_a_name(void **state)
+TEST(a_strange_machine_leaves_the_soil_without_a_name)
 {
-    (void)state;
     struct dig_trace_work            t     = search(DIG_EFFECT_LAYERING, 0.8);
     const struct dig_machine_finding air   = { .significant = true, .unexplained = true };
     const struct dig_machine_finding known = { .significant = true };
@@ -238,9 +230,8 @@ static void a_strange_machine_leaves_the_soil_without_a_name(void **state)
 }
 
 // Named, and corrected by what was measured: its model says where, and adds no template.
-static void a_rock_elsewhere_is_an_obstacle_without_a_template(void **state)
+TEST(a_rock_elsewhere_is_an_obstacle_without_a_template)
 {
-    (void)state;
     const struct dig_trace_work      t     = search(DIG_EFFECT_UNLISTED, 1.2);
     const struct dig_machine_finding air   = { .p_complete = 1.0 };
     struct dig_trace                 trace = { 0 };
@@ -262,18 +253,4 @@ static void a_rock_elsewhere_is_an_obstacle_without_a_template(void **state)
     free(trace.unlisted);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_has_no_name_is_corrected_whatever_free_air_shows),
-        cmocka_unit_test(what_free_air_alone_shows_is_seen_in_the_air),
-        cmocka_unit_test(what_has_no_name_is_weighed),
-        cmocka_unit_test(without_free_air_no_more_than_even_odds_are_claimed),
-        cmocka_unit_test(what_has_no_name_is_seen_where_the_residual_is_largest),
-        cmocka_unit_test(both_sides_are_named_the_machine_first),
-        cmocka_unit_test(a_machine_that_the_digs_show_is_seen_in_the_soil),
-        cmocka_unit_test(a_strange_machine_leaves_the_soil_without_a_name),
-        cmocka_unit_test(a_rock_elsewhere_is_an_obstacle_without_a_template),
-    };
-    return cmocka_run_group_tests_name("trace_verdict", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

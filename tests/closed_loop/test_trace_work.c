@@ -94,9 +94,8 @@ static void assert_gravel(void)
 }
 
 // Nobody tells where a machine's ground lies: its digs themselves say how far they are off.
-static void depth_is_as_open_as_the_digs_want(void **state)
+TEST(depth_is_as_open_as_the_digs_want)
 {
-    (void)state;
     static const struct dig_approach level[DIGS] = { { 1.0, 0.0 }, { 1.0, 0.0 } };
     static const struct dig_approach apart[DIGS] = { { 1.25, 0.0 }, { 0.75, 0.0 } };
     for (int off = 0; off < 2; off++) {
@@ -110,9 +109,8 @@ static void depth_is_as_open_as_the_digs_want(void **state)
     }
 }
 
-static void what_a_path_tells_is_taken_off(void **state)
+TEST(what_a_path_tells_is_taken_off)
 {
-    (void)state;
     static const struct dig_approach way[DIGS] = { { 1.2, 5.0 * DIG_RAD_PER_DEG },
                                                    { 0.8, -5.0 * DIG_RAD_PER_DEG } };
     dig_so(way);
@@ -138,9 +136,8 @@ static void what_a_path_tells_is_taken_off(void **state)
 }
 
 // A path is longer than the table's, too, where the recording begins in the air.
-static void a_path_that_began_in_the_air_is_no_deeper_dig(void **state)
+TEST(a_path_that_began_in_the_air_is_no_deeper_dig)
 {
-    (void)state;
     static const struct dig_approach way[DIGS] = { { 1.0, 5.0 * DIG_RAD_PER_DEG }, { 1.0, 0.0 } };
     dig_so(way);
     measured[0].made = (struct dig_approach){ 1.25, way[0].attack_rad };
@@ -151,12 +148,4 @@ static void a_path_that_began_in_the_air_is_no_deeper_dig(void **state)
     assert_true(dig_approach_is_plain(&measured[1].taken_off));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_is_as_open_as_the_digs_want),
-        cmocka_unit_test(what_a_path_tells_is_taken_off),
-        cmocka_unit_test(a_path_that_began_in_the_air_is_no_deeper_dig),
-    };
-    return cmocka_run_group_tests_name("trace_work", tests, setup, teardown);
-}
+TESTS_WITH(setup, teardown)

@@ -24,9 +24,8 @@ static struct dig_trend fit(const size_t digs, const double slope[])
     return trend;
 }
 
-static void what_all_digs_show_is_a_slope_that_chance_does_not_make(void **state)
+TEST(what_all_digs_show_is_a_slope_that_chance_does_not_make)
 {
-    (void)state;
     const double           slope[DIGS] = { 2.1, 1.9, 2.0, 2.2, 1.8, 2.0, 2.05, 1.95 };
     const struct dig_trend t           = fit(DIGS, slope);
     assert_close(t.slope, 2.0, 1e-9);
@@ -43,9 +42,8 @@ static void what_all_digs_show_is_a_slope_that_chance_does_not_make(void **state
 
 // Hundreds of points on a line each, and yet only as many witnesses as there are digs: slopes drawn
 // about nothing are rarely significant.
-static void points_of_one_dig_are_one_witness(void **state)
+TEST(points_of_one_dig_are_one_witness)
 {
-    (void)state;
     enum { CAMPAIGNS = 100 };
     uint64_t seed  = 4;
     double   small = 0.0;
@@ -62,9 +60,8 @@ static void points_of_one_dig_are_one_witness(void **state)
 }
 
 // The standard error of a bin is that of the mean over digs, whatever a dig's points do within it.
-static void a_bin_s_error_is_told_by_its_digs(void **state)
+TEST(a_bin_s_error_is_told_by_its_digs)
 {
-    (void)state;
     double               level[DIGS] = { 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0 };
     struct dig_trend_dig dig[DIGS];
     struct dig_trend     t;
@@ -85,9 +82,8 @@ static void a_bin_s_error_is_told_by_its_digs(void **state)
     assert_true(t.p > 0.9);
 }
 
-static void what_does_not_vary_and_too_few_digs_tell_nothing(void **state)
+TEST(what_does_not_vary_and_too_few_digs_tell_nothing)
 {
-    (void)state;
     const double     slope[2] = { 1.0, 1.0 };
     struct dig_trend t        = fit(2, slope);
     assert_close(t.slope, 1.0, 1e-9);
@@ -111,9 +107,8 @@ static void what_does_not_vary_and_too_few_digs_tell_nothing(void **state)
 }
 
 // Constant along a dig, as the pass is: the digs differ from each other.
-static void what_differs_between_digs_alone_has_a_slope_too(void **state)
+TEST(what_differs_between_digs_alone_has_a_slope_too)
 {
-    (void)state;
     struct dig_trend_dig dig[DIGS];
     struct dig_trend     t;
     for (size_t i = 0; i < DIGS; i++) {
@@ -127,16 +122,4 @@ static void what_differs_between_digs_alone_has_a_slope_too(void **state)
     assert_close(t.slope, 0.5, 1e-9);
     assert_true(t.p < 0.05);
     assert_int_equal(t.bins, 4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_all_digs_show_is_a_slope_that_chance_does_not_make),
-        cmocka_unit_test(points_of_one_dig_are_one_witness),
-        cmocka_unit_test(a_bin_s_error_is_told_by_its_digs),
-        cmocka_unit_test(what_does_not_vary_and_too_few_digs_tell_nothing),
-        cmocka_unit_test(what_differs_between_digs_alone_has_a_slope_too),
-    };
-    return cmocka_run_group_tests_name("trend", tests, NULL, NULL);
 }

@@ -65,9 +65,8 @@ static double correct(const double magnitude[2], const enum made_trajectory alon
     return sqrt(sum);
 }
 
-static void what_all_digs_show_is_corrected(void **state)
+TEST(what_all_digs_show_is_corrected)
 {
-    (void)state;
     double dip = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         dip += pow(made_effect(DIG_EFFECT_UNLISTED, MADE_SIMPLE_A, DIG_CHANNEL_MY_Nm,
@@ -82,19 +81,11 @@ static void what_all_digs_show_is_corrected(void **state)
 
 // Large in every dig and different in each: the mean of the others makes each worse, and of the
 // real dig alone nobody knows.
-static void digs_that_differ_from_each_other_are_left_alone(void **state)
+TEST(digs_that_differ_from_each_other_are_left_alone)
 {
-    (void)state;
     const double against[2] = { 2.0, -2.0 };
     assert_close(correct(against, MADE_SIMPLE_A), 0.0, 1e-9);
     assert_close(correct(against, MADE_ACTUAL), 0.0, 1e-9);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_all_digs_show_is_corrected),
-        cmocka_unit_test(digs_that_differ_from_each_other_are_left_alone),
-    };
-    return cmocka_run_group_tests_name("unlisted", tests, make, clean);
-}
+TESTS_WITH(make, clean)

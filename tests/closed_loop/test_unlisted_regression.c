@@ -94,9 +94,8 @@ static bool has(const struct dig_regressed *const r, const enum dig_basis basis)
     return found;
 }
 
-static void what_grows_with_the_pass_is_said_to(void **state)
+TEST(what_grows_with_the_pass_is_said_to)
 {
-    (void)state;
     const struct differ  differ = { .passes = true };
     uint64_t             seed   = 21;
     struct dig_regressed means;
@@ -119,9 +118,8 @@ static void what_grows_with_the_pass_is_said_to(void **state)
     assert_false(has(&digs, DIG_BASIS_PASS));
 }
 
-static void what_grows_with_the_machines_pitch_is_said_to(void **state)
+TEST(what_grows_with_the_machines_pitch_is_said_to)
 {
-    (void)state;
     const struct differ  differ = { .pitches = true };
     uint64_t             seed   = 22;
     struct dig_regressed means;
@@ -166,9 +164,8 @@ static double jerked(const double progress)
     return first * fmax(half - fabs(time - 0.6), 0.0) + second * fmax(half - fabs(time - 2.6), 0.0);
 }
 
-static void what_comes_where_the_bucket_is_jerked_is_said_to(void **state)
+TEST(what_comes_where_the_bucket_is_jerked_is_said_to)
 {
-    (void)state;
     const struct differ  none = { .passes = false };
     uint64_t             seed = 23;
     struct dig_regressed means;
@@ -190,9 +187,8 @@ static void what_comes_where_the_bucket_is_jerked_is_said_to(void **state)
 // Plain campaigns, alike or as different as campaigns are: with more to choose from, chance finds
 // no more, but for what two such counts differ by (2 sigma). In 6000 campaigns each it was 99 and
 // 100, 110 and 12, 176 and 33, 171 and 25.
-static void plain_digs_depend_on_nothing_more_often_than_before(void **state)
+TEST(plain_digs_depend_on_nothing_more_often_than_before)
 {
-    (void)state;
     const int                  draws    = test_is_quick() ? 60 : 600;
     static const struct differ differ[] = { { false, false, false },
                                             { true, false, false },
@@ -218,13 +214,4 @@ static void plain_digs_depend_on_nothing_more_often_than_before(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_grows_with_the_pass_is_said_to),
-        cmocka_unit_test(what_grows_with_the_machines_pitch_is_said_to),
-        cmocka_unit_test(what_comes_where_the_bucket_is_jerked_is_said_to),
-        cmocka_unit_test(plain_digs_depend_on_nothing_more_often_than_before),
-    };
-    return cmocka_run_group_tests_name("unlisted_regression", tests, make, clean);
-}
+TESTS_WITH(make, clean)

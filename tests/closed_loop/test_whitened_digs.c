@@ -30,9 +30,8 @@ static struct dig_whitened_digs *batch_of(struct dig_measured    measured[DIGS],
 }
 
 // One dig scatters by 1 in every direction, in whatever channel and bin.
-static void digs_of_one_gravel_scatter_by_one(void **state)
+TEST(digs_of_one_gravel_scatter_by_one)
 {
-    (void)state;
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
     enum dig_status           status;
     struct dig_whitened_digs *batch = batch_of(measured, &status);
@@ -50,9 +49,8 @@ static void digs_of_one_gravel_scatter_by_one(void **state)
     free(measured);
 }
 
-static void what_the_machine_adds_is_taken_off(void **state)
+TEST(what_the_machine_adds_is_taken_off)
 {
-    (void)state;
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
     enum dig_status           status;
     struct dig_whitened_digs *plain = batch_of(measured, &status);
@@ -80,9 +78,8 @@ static void what_the_machine_adds_is_taken_off(void **state)
 
 // Two digs of thirty were rid of what an approach adds, which two beds know: the mean is off by a
 // fifteenth of what that is off by, whatever the digs' number.
-static void what_approaches_add_is_shared(void **state)
+TEST(what_approaches_add_is_shared)
 {
-    (void)state;
     static const struct dig_hypothesis plain                         = { .effects = 0 };
     const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_measured               *measured = calloc(DIGS, sizeof *measured);
@@ -119,9 +116,8 @@ static void what_approaches_add_is_shared(void **state)
 
 // Where digs scatter more, what stands for a model shrinks as they do: a model that explained them
 // still does.
-static void digs_and_models_shrink_alike(void **state)
+TEST(digs_and_models_shrink_alike)
 {
-    (void)state;
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
     enum dig_status           status;
     struct dig_whitened_digs *batch = batch_of(measured, &status);
@@ -149,9 +145,8 @@ static void digs_and_models_shrink_alike(void **state)
 }
 
 // Digs that were measured in part are compared in that part; of nothing there is no batch.
-static void only_what_all_digs_have_is_compared(void **state)
+TEST(only_what_all_digs_have_is_compared)
 {
-    (void)state;
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
     enum dig_status           status;
     struct dig_whitened_digs *batch = batch_of(measured, &status);
@@ -196,9 +191,8 @@ static double integrated(const double known, const double numbers, const double 
     return -2.0 * (most + log(sum));
 }
 
-static void a_size_known_from_few_beds_is_integrated_out(void **state)
+TEST(a_size_known_from_few_beds_is_integrated_out)
 {
-    (void)state;
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
     enum dig_status           status;
     struct dig_whitened_digs *batch   = batch_of(measured, &status);
@@ -222,15 +216,4 @@ static void a_size_known_from_few_beds_is_integrated_out(void **state)
     free(measured);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(digs_of_one_gravel_scatter_by_one),
-        cmocka_unit_test(what_the_machine_adds_is_taken_off),
-        cmocka_unit_test(what_approaches_add_is_shared),
-        cmocka_unit_test(digs_and_models_shrink_alike),
-        cmocka_unit_test(only_what_all_digs_have_is_compared),
-        cmocka_unit_test(a_size_known_from_few_beds_is_integrated_out),
-    };
-    return cmocka_run_group_tests_name("batch", tests, world_setup, world_teardown);
-}
+TESTS_WITH(world_setup, world_teardown)

@@ -1,5 +1,5 @@
 // The made world, and the soil of its effects, for all the tests of a program:
-//   cmocka_run_group_tests_name("x", tests, world_setup, world_teardown)
+//   TESTS_WITH(world_setup, world_teardown)
 
 #ifndef DIG_TESTS_WORLD_FIXTURE_H
 #define DIG_TESTS_WORLD_FIXTURE_H

@@ -40,9 +40,8 @@ static struct dig_trajectory make(const struct dig_scene *const scene, const cha
     return made;
 }
 
-static void the_plain_one_changes_no_bit(void **state)
+TEST(the_plain_one_changes_no_bit)
 {
-    (void)state;
     const struct dig_scene scene = rig();
     for (size_t t = 0; t < scene.trajectories; t++) {
         const struct dig_trajectory one  = make(&scene, scene.trajectory[t].name, 1.0, 0.0);
@@ -52,9 +51,8 @@ static void the_plain_one_changes_no_bit(void **state)
     }
 }
 
-static void depth_is_how_far_the_tooth_goes_down(void **state)
+TEST(depth_is_how_far_the_tooth_goes_down)
 {
-    (void)state;
     const struct dig_scene             scene   = rig();
     const struct dig_trajectory *const plain   = dig_scene_find(&scene, "actual");
     const double                       end_s   = plain->phase[0].duration_s;
@@ -78,9 +76,8 @@ static void depth_is_how_far_the_tooth_goes_down(void **state)
 }
 
 // The first phase of this one begins 40 mm above the ground and turns, too.
-static void depth_counts_from_the_ground_and_beside_turning(void **state)
+TEST(depth_counts_from_the_ground_and_beside_turning)
 {
-    (void)state;
     struct dig_scene             scene = rig();
     struct dig_trajectory *const t     = &scene.trajectory[0];
     t->start_z_m += 0.04;
@@ -94,9 +91,8 @@ static void depth_counts_from_the_ground_and_beside_turning(void **state)
     assert_close(scene.box.z_max_m - tooth_at(&dug, end_s).z_m, 1.3 * depth_m, 1e-12);
 }
 
-static void attack_turns_the_bucket_about_its_tooth(void **state)
+TEST(attack_turns_the_bucket_about_its_tooth)
 {
-    (void)state;
     const struct dig_scene             scene = rig();
     const struct dig_trajectory *const plain = dig_scene_find(&scene, "simpleA");
     const struct dig_trajectory        dug   = make(&scene, "simpleA", 1.0, 5.0);
@@ -124,9 +120,8 @@ static void refuse(const struct dig_scene *const scene, const struct dig_traject
     assert_memory_equal(&made, &before, sizeof made);
 }
 
-static void what_cannot_be_is_refused_by_name(void **state)
+TEST(what_cannot_be_is_refused_by_name)
 {
-    (void)state;
     struct dig_scene             scene = rig();
     struct dig_trajectory *const t     = &scene.trajectory[0];
     refuse(&scene, t, 0.1, 0.0, "trajectory simpleA: depth 0.1, expected 0.2 to 3");
@@ -142,9 +137,8 @@ static void what_cannot_be_is_refused_by_name(void **state)
     refuse(&scene, t, 1.1, 0.0, "its first phase does not go down below the ground");
 }
 
-static void they_are_ordered_by_depth_then_attack(void **state)
+TEST(they_are_ordered_by_depth_then_attack)
 {
-    (void)state;
     const struct dig_approach in_order[] = {
         { 0.8, 0.0 }, { 1.0, -0.1 }, { 0.0, 0.0 }, { 1.0, 0.1 }, { 1.2, -0.2 }
     };
@@ -161,17 +155,4 @@ static void they_are_ordered_by_depth_then_attack(void **state)
     assert_string_equal(text, "");
     dig_approach_text(&(struct dig_approach){ 1.15, -5.0 * DIG_RAD_PER_DEG }, text);
     assert_string_equal(text, ", depth 1.15, attack -5 deg");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_plain_one_changes_no_bit),
-        cmocka_unit_test(depth_is_how_far_the_tooth_goes_down),
-        cmocka_unit_test(depth_counts_from_the_ground_and_beside_turning),
-        cmocka_unit_test(attack_turns_the_bucket_about_its_tooth),
-        cmocka_unit_test(what_cannot_be_is_refused_by_name),
-        cmocka_unit_test(they_are_ordered_by_depth_then_attack),
-    };
-    return cmocka_run_group_tests_name("approach", tests, NULL, NULL);
 }

@@ -37,9 +37,8 @@ static const char *read_line(const char *const line)
     return strcat(seen, error.text);
 }
 
-static void options_are_those_of_the_command(void **state)
+TEST(options_are_those_of_the_command)
 {
-    (void)state;
     assert_string_equal(read_line("coffee brew cup --beans 3 pot --milk -o x"),
                         "256=3 257= 111=x cup pot ");
     assert_string_equal(read_line("coffee brew --json cup"), "258= cup ");
@@ -50,9 +49,8 @@ static void options_are_those_of_the_command(void **state)
     assert_string_equal(read_line("coffee brew -h --version"), "104= 1= ");
 }
 
-static void what_is_wrong_is_said_with_what_was_meant(void **state)
+TEST(what_is_wrong_is_said_with_what_was_meant)
 {
-    (void)state;
     static const char *const wrong[][2] = {
         { "coffee", "expected a command: brew or roast" },
         { "coffee --", "expected a command: brew or roast" },
@@ -75,9 +73,8 @@ static void what_is_wrong_is_said_with_what_was_meant(void **state)
     }
 }
 
-static void some_programs_are_called_without_command_too(void **state)
+TEST(some_programs_are_called_without_command_too)
 {
-    (void)state;
     struct dig_program both   = coffee;
     char               name[] = "coffee";
     char              *argv[] = { name, NULL };
@@ -88,9 +85,8 @@ static void some_programs_are_called_without_command_too(void **state)
     assert_string_equal(error.text, "");
 }
 
-static void a_number_is_all_of_its_text_and_in_range(void **state)
+TEST(a_number_is_all_of_its_text_and_in_range)
 {
-    (void)state;
     double value = 0.0;
     assert_true(dig_number_read("-1.5e1", -15.0, 0.0, &value));
     assert_close(value, -15.0, 0.0);
@@ -99,15 +95,4 @@ static void a_number_is_all_of_its_text_and_in_range(void **state)
         assert_false(dig_number_read(bad[i], 0.0, 3.0, &value));
         assert_close(value, -15.0, 0.0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(options_are_those_of_the_command),
-        cmocka_unit_test(what_is_wrong_is_said_with_what_was_meant),
-        cmocka_unit_test(some_programs_are_called_without_command_too),
-        cmocka_unit_test(a_number_is_all_of_its_text_and_in_range),
-    };
-    return cmocka_run_group_tests_name("command line", tests, NULL, NULL);
 }

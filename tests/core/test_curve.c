@@ -25,9 +25,8 @@ static const struct dig_trajectory path = {
 static const double tooth_m = 0.09;
 
 // Brute force: integrate the rates in small steps.
-static void pose_and_path_are_the_integral_of_the_rates(void **state)
+TEST(pose_and_path_are_the_integral_of_the_rates)
 {
-    (void)state;
     struct dig_pose walked   = { path.start_x_m, path.start_z_m, path.theta0_rad };
     double          walked_m = 0.0, time_s = 0.0;
     const double    step_s = 1e-4;
@@ -57,9 +56,8 @@ static void pose_and_path_are_the_integral_of_the_rates(void **state)
     assert_close(dig_trajectory_pose(&path, -1.0).z_m, path.start_z_m, 0.0);
 }
 
-static void time_of_progress_inverts_the_path(void **state)
+TEST(time_of_progress_inverts_the_path)
 {
-    (void)state;
     const double whole_m = dig_trajectory_path_m(&path, tooth_m, 99.0);
     for (int i = 0; i <= 1000; i++) {
         const double progress = i / 1000.0;
@@ -90,9 +88,8 @@ static double mean_by_steps(const size_t n, const double t_s[], const double y[]
     return sum / many;
 }
 
-static void smoothing_is_the_mean_over_the_window_at_uneven_times(void **state)
+TEST(smoothing_is_the_mean_over_the_window_at_uneven_times)
 {
-    (void)state;
     enum { N = 120 };
     double t_s[N], y[N], out[N];
     srand(7);
@@ -106,9 +103,8 @@ static void smoothing_is_the_mean_over_the_window_at_uneven_times(void **state)
     }
 }
 
-static void smoothing_keeps_lines_and_zero_width_keeps_all(void **state)
+TEST(smoothing_keeps_lines_and_zero_width_keeps_all)
 {
-    (void)state;
     double t_s[50], y[50], out[50];
     for (int i = 0; i < 50; i++) {
         t_s[i] = 0.005 * i;
@@ -124,9 +120,8 @@ static void smoothing_keeps_lines_and_zero_width_keeps_all(void **state)
     }
 }
 
-static void gravels_are_the_same_where_every_axis_is(void **state)
+TEST(gravels_are_the_same_where_every_axis_is)
 {
-    (void)state;
     const struct dig_gravel a = { { 0.5, 0.0, 2500.0 } };
     struct dig_gravel       b = { { 0.5, -0.0, 2500.0 } };
     assert_true(dig_gravel_is_same(&a, &b));
@@ -137,24 +132,10 @@ static void gravels_are_the_same_where_every_axis_is(void **state)
     }
 }
 
-static void a_mean_square_is_over_all_points(void **state)
+TEST(a_mean_square_is_over_all_points)
 {
-    (void)state;
     float y[DIG_CURVE_POINTS] = { 0.0F };
     y[0]                      = 3.0F;
     y[DIG_CURVE_POINTS - 1]   = -4.0F;
     assert_close(dig_curve_mean_square(y), 25.0 / DIG_CURVE_POINTS, 1e-15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pose_and_path_are_the_integral_of_the_rates),
-        cmocka_unit_test(gravels_are_the_same_where_every_axis_is),
-        cmocka_unit_test(a_mean_square_is_over_all_points),
-        cmocka_unit_test(time_of_progress_inverts_the_path),
-        cmocka_unit_test(smoothing_is_the_mean_over_the_window_at_uneven_times),
-        cmocka_unit_test(smoothing_keeps_lines_and_zero_width_keeps_all),
-    };
-    return cmocka_run_group_tests_name("curve", tests, NULL, NULL);
 }

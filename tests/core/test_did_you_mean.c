@@ -17,9 +17,8 @@ static const char *best_of(const char *const word)
     return guess.best;
 }
 
-static void a_slip_of_the_fingers_is_understood(void **state)
+TEST(a_slip_of_the_fingers_is_understood)
 {
-    (void)state;
     static const char *const meant[][2] = {
         { "shwo", "show" },
         { "sho", "show" },
@@ -38,18 +37,16 @@ static void a_slip_of_the_fingers_is_understood(void **state)
     }
 }
 
-static void another_word_is_not_guessed(void **state)
+TEST(another_word_is_not_guessed)
 {
-    (void)state;
     static const char *const strange[] = { "frob", "ship", "gravel", "generic-word", "xy" };
     for (size_t i = 0; i < sizeof strange / sizeof strange[0]; i++) {
         assert_null(best_of(strange[i]));
     }
 }
 
-static void the_nearest_wins_whatever_the_order(void **state)
+TEST(the_nearest_wins_whatever_the_order)
 {
-    (void)state;
     struct dig_guess guess = dig_guess("packings");
     dig_guess_try(&guess, "parking");
     assert_string_equal(guess.best, "parking");
@@ -59,9 +56,8 @@ static void the_nearest_wins_whatever_the_order(void **state)
     assert_string_equal(guess.best, "packing");
 }
 
-static void long_words_are_left_alone(void **state)
+TEST(long_words_are_left_alone)
 {
-    (void)state;
     char word[4096];
     memset(word, 'a', sizeof word - 1);
     word[sizeof word - 1]  = '\0';
@@ -73,24 +69,11 @@ static void long_words_are_left_alone(void **state)
     assert_null(guess.best);
 }
 
-static void the_text_is_a_question_or_nothing(void **state)
+TEST(the_text_is_a_question_or_nothing)
 {
-    (void)state;
     char             text[DIG_GUESS_SIZE] = "old";
     struct dig_guess guess                = dig_guess("jsno");
     assert_string_equal(dig_guess_text(&guess, "--", text), "");
     dig_guess_try(&guess, "json");
     assert_string_equal(dig_guess_text(&guess, "--", text), ", did you mean \"--json\"?");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_slip_of_the_fingers_is_understood),
-        cmocka_unit_test(another_word_is_not_guessed),
-        cmocka_unit_test(the_nearest_wins_whatever_the_order),
-        cmocka_unit_test(long_words_are_left_alone),
-        cmocka_unit_test(the_text_is_a_question_or_nothing),
-    };
-    return cmocka_run_group_tests_name("did you mean", tests, NULL, NULL);
 }

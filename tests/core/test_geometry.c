@@ -27,16 +27,14 @@ static void is_refused(const struct dig_machine *const machine, const char *cons
     assert_non_null(strstr(error.text, "expected"));
 }
 
-static void what_could_be_built_passes(void **state)
+TEST(what_could_be_built_passes)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     passes(&machine);
 }
 
-static void slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key(void **state)
+TEST(slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key)
 {
-    (void)state;
     const struct dig_machine good = model_machine();
     struct dig_machine       m    = good;
 
@@ -72,9 +70,8 @@ static void slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key(void **st
 }
 
 // A stroke from where the range begins to a part of the way: the lengths are the model's.
-static void a_stroke_is_half_of_the_range_or_more(void **state)
+TEST(a_stroke_is_half_of_the_range_or_more)
 {
-    (void)state;
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_machine good = model_machine();
         const enum dig_joint     at   = (enum dig_joint)j;
@@ -117,9 +114,8 @@ static struct dig_machine rising_until(const double share)
     return m;
 }
 
-static void a_drive_that_comes_to_a_dead_centre_is_refused(void **state)
+TEST(a_drive_that_comes_to_a_dead_centre_is_refused)
 {
-    (void)state;
     const struct dig_machine near   = rising_until(0.06);
     const struct dig_machine nearer = rising_until(0.04);
     const struct dig_machine over   = rising_until(-0.5);
@@ -128,9 +124,8 @@ static void a_drive_that_comes_to_a_dead_centre_is_refused(void **state)
     is_refused(&over, "cylinders.boom: a lever of -0.3");
 }
 
-static void what_hangs_on_a_sensor_lies_within_reach_of_it(void **state)
+TEST(what_hangs_on_a_sensor_lies_within_reach_of_it)
 {
-    (void)state;
     const struct dig_machine good = {
         .link[DIG_JOINT_BUCKET] = { 0.09, 0.136, { 0.013, 0.017 }, 3.2e-4, -3.0, 3.0 },
         .sensor                 = { .fitted = true, .place_m = { -0.06, 0.0 } },
@@ -142,16 +137,4 @@ static void what_hangs_on_a_sensor_lies_within_reach_of_it(void **state)
     m                                     = good;
     m.link[DIG_JOINT_BUCKET].inertia_kgm2 = 3.2e-2;
     is_refused(&m, "bucket.inertia_kgm2: 0.032, expected at most");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_could_be_built_passes),
-        cmocka_unit_test(slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key),
-        cmocka_unit_test(a_stroke_is_half_of_the_range_or_more),
-        cmocka_unit_test(a_drive_that_comes_to_a_dead_centre_is_refused),
-        cmocka_unit_test(what_hangs_on_a_sensor_lies_within_reach_of_it),
-    };
-    return cmocka_run_group_tests_name("geometry", tests, NULL, NULL);
 }

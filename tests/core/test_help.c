@@ -20,9 +20,8 @@ static void assert_help(const struct dig_command *const command, const char *con
     free(text);
 }
 
-static void help_of_a_command_is_its_own(void **state)
+TEST(help_of_a_command_is_its_own)
 {
-    (void)state;
     assert_help(&coffee.command[0],
                 "Usage: coffee brew CUP... [OPTION]...\n"
                 "  or:  coffee brew POT\n"
@@ -50,9 +49,8 @@ static void help_of_a_command_is_its_own(void **state)
                 "  0  done\n");
 }
 
-static void help_of_a_program_lists_its_commands(void **state)
+TEST(help_of_a_program_lists_its_commands)
 {
-    (void)state;
     assert_help(&coffee.self,
                 "Usage: coffee COMMAND\n"
                 "\n"
@@ -71,13 +69,4 @@ static void help_of_a_program_lists_its_commands(void **state)
                 "\n"
                 "Exit status:\n"
                 "  0  done\n");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(help_of_a_command_is_its_own),
-        cmocka_unit_test(help_of_a_program_lists_its_commands),
-    };
-    return cmocka_run_group_tests_name("help", tests, NULL, NULL);
 }

@@ -18,9 +18,8 @@ static struct dig_lever solve(const struct dig_machine *const machine, const enu
 
 // Virtual work: what the rod does along its stroke, the joint does along its angle. The solver
 // balances forces and never differentiates, so the two sides share no formula.
-static void every_lever_is_the_slope_of_the_cylinders_length(void **state)
+TEST(every_lever_is_the_slope_of_the_cylinders_length)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     for (int j = 0; j < DIG_JOINTS; j++) {
         const struct dig_link *const link = &machine.link[j];
@@ -34,9 +33,8 @@ static void every_lever_is_the_slope_of_the_cylinders_length(void **state)
     }
 }
 
-static void every_bar_keeps_its_length_and_m_stays_on_its_side(void **state)
+TEST(every_bar_keeps_its_length_and_m_stays_on_its_side)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     const struct dig_vec2    q       = { machine.link[DIG_JOINT_ARM].length_m, 0.0 };
     for (int deg = -120; deg <= 30; deg++) {
@@ -55,9 +53,8 @@ static void every_bar_keeps_its_length_and_m_stays_on_its_side(void **state)
 
 // A parallelogram passes moment on unchanged, and here the rod stands square to the rocker.
 // A push curls: clockwise, so negative.
-static void parallelogram_gives_force_times_rocker(void **state)
+TEST(parallelogram_gives_force_times_rocker)
 {
-    (void)state;
     struct dig_machine machine                = model_machine();
     machine.link[DIG_JOINT_ARM].length_m      = 1.0;
     machine.cylinder[DIG_JOINT_BUCKET].base_m = (struct dig_vec2){ -2.0, 0.5 };
@@ -67,9 +64,8 @@ static void parallelogram_gives_force_times_rocker(void **state)
     assert_close(lever.length_m, 2.0, 1e-12);
 }
 
-static void poses_that_cannot_be_are_refused_and_write_nothing(void **state)
+TEST(poses_that_cannot_be_are_refused_and_write_nothing)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     struct dig_machine       open = machine, toggled = machine, folded = machine, rodless = machine;
     struct dig_linkage_pose  at_0;
@@ -95,9 +91,8 @@ static void poses_that_cannot_be_are_refused_and_write_nothing(void **state)
     assert_close(lever.arm_m, 42.0, 0.0);
 }
 
-static void check_refuses_a_linkage_that_does_not_close_over_its_range(void **state)
+TEST(check_refuses_a_linkage_that_does_not_close_over_its_range)
 {
-    (void)state;
     struct dig_machine machine = model_machine();
     struct dig_error   error;
     assert_int_equal(dig_linkage_check(&machine, &error), DIG_OK);
@@ -105,16 +100,4 @@ static void check_refuses_a_linkage_that_does_not_close_over_its_range(void **st
     assert_int_equal(dig_linkage_check(&machine, &error), DIG_EUNREACHABLE);
     assert_non_null(strstr(error.text, "bucket"));
     assert_int_equal(dig_linkage_check(&machine, NULL), DIG_EUNREACHABLE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_lever_is_the_slope_of_the_cylinders_length),
-        cmocka_unit_test(every_bar_keeps_its_length_and_m_stays_on_its_side),
-        cmocka_unit_test(parallelogram_gives_force_times_rocker),
-        cmocka_unit_test(poses_that_cannot_be_are_refused_and_write_nothing),
-        cmocka_unit_test(check_refuses_a_linkage_that_does_not_close_over_its_range),
-    };
-    return cmocka_run_group_tests_name("linkage", tests, NULL, NULL);
 }

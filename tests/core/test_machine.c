@@ -34,9 +34,8 @@ static struct dig_machine plausible(void)
     return m;
 }
 
-static void a_plausible_machine_passes(void **state)
+TEST(a_plausible_machine_passes)
 {
-    (void)state;
     const struct dig_machine m = plausible();
     struct dig_error         e = { "untouched" };
     assert_int_equal(dig_machine_check(&m, &e), DIG_OK);
@@ -53,9 +52,8 @@ static void expect_refusal(const struct dig_machine *const m, const char *const 
     assert_non_null(strstr(e.text, "expected"));
 }
 
-static void what_cannot_be_is_refused_by_its_key(void **state)
+TEST(what_cannot_be_is_refused_by_its_key)
 {
-    (void)state;
     struct dig_machine m = plausible();
     m.link[1].mass_kg    = 0.0;
     expect_refusal(&m, "arm.mass_kg: 0");
@@ -94,17 +92,15 @@ static void what_cannot_be_is_refused_by_its_key(void **state)
 }
 
 // 4 x area / pi is the square of the diameter; the annulus is the difference of two squares.
-static void areas_are_those_of_circles(void **state)
+TEST(areas_are_those_of_circles)
 {
-    (void)state;
     const struct dig_machine m = plausible();
     assert_close(dig_cylinder_head_m2(&m.cylinder[0]), 113.0973355e-4, 1e-11);
     assert_close(dig_cylinder_rod_m2(&m.cylinder[0]), 113.0973355e-4 - 56.7450173e-4, 1e-11);
 }
 
-static void every_signal_has_a_name_that_finds_it(void **state)
+TEST(every_signal_has_a_name_that_finds_it)
 {
-    (void)state;
     for (int i = 0; i < DIG_SIGNALS; i++) {
         assert_int_equal(dig_signal_find(dig_signal_name((enum dig_signal)i)), i);
     }
@@ -112,9 +108,8 @@ static void every_signal_has_a_name_that_finds_it(void **state)
     assert_null(dig_signal_name(DIG_SIGNALS));
 }
 
-static void a_sample_is_complete_without_the_optional_signals_only(void **state)
+TEST(a_sample_is_complete_without_the_optional_signals_only)
 {
-    (void)state;
     struct dig_sample s = { 0 };
     for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
         s.valid[i] = true;
@@ -127,9 +122,8 @@ static void a_sample_is_complete_without_the_optional_signals_only(void **state)
     }
 }
 
-static void angles_and_the_buckets_pressures_tell_the_moment(void **state)
+TEST(angles_and_the_buckets_pressures_tell_the_moment)
 {
-    (void)state;
     struct dig_sample s = { 0 };
     for (int i = 0; i < DIG_SIGNALS_NEEDED; i++) {
         s.valid[i] = true;
@@ -144,9 +138,8 @@ static void angles_and_the_buckets_pressures_tell_the_moment(void **state)
     }
 }
 
-static void what_is_missing_is_named(void **state)
+TEST(what_is_missing_is_named)
 {
-    (void)state;
     bool valid[DIG_SIGNALS];
     char text[DIG_SIGNAL_NAMES_SIZE];
     for (int i = 0; i < DIG_SIGNALS; i++) {
@@ -166,9 +159,8 @@ static void what_is_missing_is_named(void **state)
 }
 
 // Of a rig all that it has is needed; nothing of a machine with cylinders may be there beside it.
-static void a_force_sensor_tells_the_moment_with_the_pin_and_the_buckets_angle(void **state)
+TEST(a_force_sensor_tells_the_moment_with_the_pin_and_the_buckets_angle)
 {
-    (void)state;
     static const enum dig_signal needed[] = {
         DIG_SIGNAL_BUCKET_rad,  DIG_SIGNAL_PIN_X_m,     DIG_SIGNAL_PIN_Z_m,
         DIG_SIGNAL_SENSOR_FX_N, DIG_SIGNAL_SENSOR_FZ_N, DIG_SIGNAL_SENSOR_MY_Nm,
@@ -190,19 +182,4 @@ static void a_force_sensor_tells_the_moment_with_the_pin_and_the_buckets_angle(v
     s.valid[DIG_SIGNAL_ARM_HEAD_Pa] = true;
     assert_int_equal(dig_signals_sensing(s.valid), DIG_SENSING_CYLINDERS);
     assert_false(dig_sample_has_moment(&s));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plausible_machine_passes),
-        cmocka_unit_test(what_cannot_be_is_refused_by_its_key),
-        cmocka_unit_test(areas_are_those_of_circles),
-        cmocka_unit_test(every_signal_has_a_name_that_finds_it),
-        cmocka_unit_test(a_sample_is_complete_without_the_optional_signals_only),
-        cmocka_unit_test(angles_and_the_buckets_pressures_tell_the_moment),
-        cmocka_unit_test(what_is_missing_is_named),
-        cmocka_unit_test(a_force_sensor_tells_the_moment_with_the_pin_and_the_buckets_angle),
-    };
-    return cmocka_run_group_tests_name("machine", tests, NULL, NULL);
 }

@@ -45,9 +45,8 @@ static const char *const hostile[] = {
     "a ",
 };
 
-static void names_of_scenes_and_trajectories_pass(void **state)
+TEST(names_of_scenes_and_trajectories_pass)
 {
-    (void)state;
     static const char *const good[] = {
         "a", "simpleA", "rig", "tub-of-everything", "zx200_trench", "v1.2", "0.5_x", "_a", "7",
     };
@@ -56,9 +55,8 @@ static void names_of_scenes_and_trajectories_pass(void **state)
     }
 }
 
-static void nothing_hostile_is_a_name_or_a_label(void **state)
+TEST(nothing_hostile_is_a_name_or_a_label)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
         if (dig_name_ok(hostile[i]) || dig_label_ok(hostile[i])) {
             fail_msg("taken: %s", hostile[i]);
@@ -68,9 +66,8 @@ static void nothing_hostile_is_a_name_or_a_label(void **state)
     assert_false(dig_name_ok("a/b"));
 }
 
-static void every_byte_but_those_told_is_refused_within_a_name(void **state)
+TEST(every_byte_but_those_told_is_refused_within_a_name)
 {
-    (void)state;
     size_t taken = 0;
     for (int c = 1; c < 256; c++) {
         const char name[] = { 'a', (char)c, 'b', '\0' };
@@ -79,9 +76,8 @@ static void every_byte_but_those_told_is_refused_within_a_name(void **state)
     assert_int_equal(taken, 26 + 26 + 10 + 3);
 }
 
-static void labels_for_people_may_have_blanks(void **state)
+TEST(labels_for_people_may_have_blanks)
 {
-    (void)state;
     static const char *const good[] = {
         "example 20 t", "0.1.0+6d34da11e608", "2026-11-22T20:34:33Z", "LIGGGHTS 3.8 (MPI)", "a/b",
     };
@@ -91,9 +87,8 @@ static void labels_for_people_may_have_blanks(void **state)
 }
 
 // CSVs hold no other text, and a spreadsheet computes what begins with = + - @ or a tab.
-static void no_name_and_no_label_is_a_formula(void **state)
+TEST(no_name_and_no_label_is_a_formula)
 {
-    (void)state;
     for (int c = 1; c < 256; c++) {
         const char text[] = { (char)c, '1', '\0' };
         const bool digit  = c >= '0' && c <= '9';
@@ -103,9 +98,8 @@ static void no_name_and_no_label_is_a_formula(void **state)
     }
 }
 
-static void files_are_named_in_one_printable_line(void **state)
+TEST(files_are_named_in_one_printable_line)
 {
-    (void)state;
     assert_true(dig_path_ok("a b/it's (1) $x \xc3\xa9.csv"));
     static const char *const bad[] = { "", "a\nb", "a\tb", "a\x1b", "\xff", "\xc2\x85", "a\r" };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -113,9 +107,8 @@ static void files_are_named_in_one_printable_line(void **state)
     }
 }
 
-static void a_relative_path_with_dots_leaves_its_folder(void **state)
+TEST(a_relative_path_with_dots_leaves_its_folder)
 {
-    (void)state;
     static const char *const stay[]  = { "a.csv", "a/b.csv", "./a", "a..b", "..a/b", "a/..b/..." };
     static const char *const leave[] = { "..", "../a", "a/../b", "a/..", "./../a", "a//../../b" };
     for (size_t i = 0; i < sizeof stay / sizeof stay[0]; i++) {
@@ -125,9 +118,8 @@ static void a_relative_path_with_dots_leaves_its_folder(void **state)
     assert_true(dig_path_stays("/srv/a/../b.csv"));
 }
 
-static void a_path_beside_a_file_begins_with_its_folder(void **state)
+TEST(a_path_beside_a_file_begins_with_its_folder)
 {
-    (void)state;
     static const char *const all[][3] = { { "maps/can.yaml", "a.dbc", "maps/a.dbc" },
                                           { "/srv/maps/can.yaml", "up/a.dbc",
                                             "/srv/maps/up/a.dbc" },
@@ -143,19 +135,4 @@ static void a_path_beside_a_file_begins_with_its_folder(void **state)
     assert_string_equal(dig_path_last("maps/can.yaml"), "can.yaml");
     assert_string_equal(dig_path_last("can.yaml"), "can.yaml");
     assert_string_equal(dig_path_last("maps/"), "");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_of_scenes_and_trajectories_pass),
-        cmocka_unit_test(nothing_hostile_is_a_name_or_a_label),
-        cmocka_unit_test(every_byte_but_those_told_is_refused_within_a_name),
-        cmocka_unit_test(labels_for_people_may_have_blanks),
-        cmocka_unit_test(no_name_and_no_label_is_a_formula),
-        cmocka_unit_test(files_are_named_in_one_printable_line),
-        cmocka_unit_test(a_path_beside_a_file_begins_with_its_folder),
-        cmocka_unit_test(a_relative_path_with_dots_leaves_its_folder),
-    };
-    return cmocka_run_group_tests_name("name", tests, NULL, NULL);
 }

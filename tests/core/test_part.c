@@ -24,9 +24,8 @@ static void lay_link(const char *const name)
     assert_int_equal(symlink(scratch_path("precious"), scratch_path(name)), 0);
 }
 
-static void a_link_is_replaced_not_followed(void **state)
+TEST(a_link_is_replaced_not_followed)
 {
-    (void)state;
     lay_link("a.part");
     FILE *const file = dig_part_open(scratch_path("a.part"));
     assert_non_null(file);
@@ -39,9 +38,8 @@ static void a_link_is_replaced_not_followed(void **state)
     assert_int_equal(found.st_size, 3);
 }
 
-static void what_was_left_there_is_replaced_and_a_folder_is_not(void **state)
+TEST(what_was_left_there_is_replaced_and_a_folder_is_not)
 {
-    (void)state;
     (void)scratch_write("b.part", "of a killed program, and longer");
     FILE *const file = dig_part_open(scratch_path("b.part"));
     assert_non_null(file);
@@ -55,9 +53,8 @@ static void what_was_left_there_is_replaced_and_a_folder_is_not(void **state)
     assert_null(dig_part_open(scratch_path("no/such/d.part")));
 }
 
-static void an_output_file_does_not_write_through_a_link_at_its_part(void **state)
+TEST(an_output_file_does_not_write_through_a_link_at_its_part)
 {
-    (void)state;
     struct dig_out   out;
     struct dig_error error = { "" };
     lay_link("out.csv.part");
@@ -70,9 +67,8 @@ static void an_output_file_does_not_write_through_a_link_at_its_part(void **stat
     assert_true(S_ISREG(found.st_mode));
 }
 
-static void a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise(void **state)
+TEST(a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise)
 {
-    (void)state;
     struct dig_out   out   = { 0 };
     struct dig_error error = { "" };
     assert_int_equal(mkfifo(scratch_path("pipe"), 0600), 0);
@@ -90,9 +86,8 @@ static void a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwi
     assert_int_equal(close(fd), 0);
 }
 
-static void nor_does_a_merged_table(void **state)
+TEST(nor_does_a_merged_table)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("in.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     dig_store_close(store);
@@ -108,14 +103,4 @@ static void nor_does_a_merged_table(void **state)
     assert_kept();
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_link_is_replaced_not_followed),
-        cmocka_unit_test(what_was_left_there_is_replaced_and_a_folder_is_not),
-        cmocka_unit_test(an_output_file_does_not_write_through_a_link_at_its_part),
-        cmocka_unit_test(nor_does_a_merged_table),
-        cmocka_unit_test(a_pipe_is_written_where_somebody_reads_it_and_not_waited_for_otherwise),
-    };
-    return cmocka_run_group_tests_name("part", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -24,9 +24,8 @@ static void refuse(const char *const path, const enum dig_status status, const c
     assert_contains(error.text, says);
 }
 
-static void a_regular_file_is_opened_by_its_name_or_by_a_link(void **state)
+TEST_WITH(a_regular_file_is_opened_by_its_name_or_by_a_link, scratch_setup, scratch_teardown)
 {
-    (void)state;
     assert_int_equal(symlink(scratch_write("file", "abc"), scratch_path("link")), 0);
     static const char *const name[] = { "file", "link" };
     for (size_t i = 0; i < 2; i++) {
@@ -38,9 +37,8 @@ static void a_regular_file_is_opened_by_its_name_or_by_a_link(void **state)
     }
 }
 
-static void what_is_no_regular_file_is_refused_at_once(void **state)
+TEST_WITH(what_is_no_regular_file_is_refused_at_once, scratch_setup, scratch_teardown)
 {
-    (void)state;
     static const char says[] = "no regular file, expected one";
     assert_int_equal(mkfifo(scratch_path("pipe"), 0600), 0);
     refuse(scratch_path("pipe"), DIG_EINVAL, says);
@@ -52,9 +50,8 @@ static void what_is_no_regular_file_is_refused_at_once(void **state)
     refuse("/dev/zero", DIG_EINVAL, says);
 }
 
-static void what_cannot_be_opened_says_why(void **state)
+TEST_WITH(what_cannot_be_opened_says_why, scratch_setup, scratch_teardown)
 {
-    (void)state;
     refuse(scratch_path("nothing"), DIG_EIO, "No such file");
     struct sockaddr_un address = { .sun_family = AF_UNIX };
     (void)snprintf(address.sun_path, sizeof address.sun_path, "%s", scratch_path("socket"));
@@ -62,17 +59,4 @@ static void what_cannot_be_opened_says_why(void **state)
     assert_int_equal(bind(fd, (const struct sockaddr *)&address, sizeof address), 0);
     refuse(scratch_path("socket"), DIG_EIO, "No such device");
     (void)close(fd);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_regular_file_is_opened_by_its_name_or_by_a_link,
-                                        scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(what_is_no_regular_file_is_refused_at_once, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(what_cannot_be_opened_says_why, scratch_setup,
-                                        scratch_teardown),
-    };
-    return cmocka_run_group_tests_name("regular", tests, NULL, NULL);
 }

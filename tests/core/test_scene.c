@@ -33,9 +33,8 @@ static void expect_refusal(const struct dig_scene *const scene, const char *cons
     assert_non_null(strstr(e.text, "expected"));
 }
 
-static void what_cannot_be_computed_is_refused_by_its_key(void **state)
+TEST(what_cannot_be_computed_is_refused_by_its_key)
 {
-    (void)state;
     struct dig_scene s = plausible();
     assert_int_equal(dig_scene_check(&s, NULL), DIG_OK);
 
@@ -66,9 +65,8 @@ static void what_cannot_be_computed_is_refused_by_its_key(void **state)
     expect_refusal(&s, "output_s");
 }
 
-static void tooth_is_the_first_point_and_trajectories_are_found(void **state)
+TEST(tooth_is_the_first_point_and_trajectories_are_found)
 {
-    (void)state;
     const struct dig_scene s = plausible();
     assert_close(dig_scene_tooth_m(&s), 0.09, 1e-15);
     assert_ptr_equal(dig_scene_find(&s, "down"), &s.trajectory[0]);
@@ -76,9 +74,8 @@ static void tooth_is_the_first_point_and_trajectories_are_found(void **state)
 }
 
 // Every number that changes a curve must change the identity.
-static void the_canonical_text_changes_with_every_number(void **state)
+TEST(the_canonical_text_changes_with_every_number)
 {
-    (void)state;
     char             before[4096], after[4096];
     struct dig_scene s      = plausible();
     const size_t     length = dig_scene_canonical(&s, sizeof before, before);
@@ -121,14 +118,4 @@ static void the_canonical_text_changes_with_every_number(void **state)
     s.may_tremble = true; // allows, and changes no number
     (void)dig_scene_canonical(&s, sizeof after, after);
     assert_string_equal(before, after);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_cannot_be_computed_is_refused_by_its_key),
-        cmocka_unit_test(tooth_is_the_first_point_and_trajectories_are_found),
-        cmocka_unit_test(the_canonical_text_changes_with_every_number),
-    };
-    return cmocka_run_group_tests_name("scene", tests, NULL, NULL);
 }

@@ -7,9 +7,8 @@
 #include <string.h>
 
 // The examples NIST publishes with FIPS 180-4, and the empty message.
-static void the_standards_own_messages_have_the_standards_digests(void **state)
+TEST(the_standards_own_messages_have_the_standards_digests)
 {
-    (void)state;
     static const struct {
         const char *message, *digest;
     } example[] = {
@@ -28,9 +27,8 @@ static void the_standards_own_messages_have_the_standards_digests(void **state)
     }
 }
 
-static void a_million_letters_added_piece_by_piece_have_the_standards_digest(void **state)
+TEST(a_million_letters_added_piece_by_piece_have_the_standards_digest)
 {
-    (void)state;
     char piece[997];
     memset(piece, 'a', sizeof piece);
     struct dig_sha256 hash;
@@ -48,13 +46,4 @@ static void a_million_letters_added_piece_by_piece_have_the_standards_digest(voi
         0x20, 0x0e, 0x04, 0x6d, 0x39, 0xcc, 0xc7, 0x11, 0x2c, 0xd0,
     };
     assert_memory_equal(digest, expected, sizeof expected);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_standards_own_messages_have_the_standards_digests),
-        cmocka_unit_test(a_million_letters_added_piece_by_piece_have_the_standards_digest),
-    };
-    return cmocka_run_group_tests_name("sha256", tests, NULL, NULL);
 }

@@ -49,9 +49,8 @@ static void assert_one_word(const char *const word)
     assert_int_equal(said[length], '|');
 }
 
-static void a_shell_reads_each_word_as_it_is(void **state)
+TEST(a_shell_reads_each_word_as_it_is)
 {
-    (void)state;
     static const char *const words[] = {
         "",
         "plain/path-1.2_3+4.csv",
@@ -100,9 +99,8 @@ static void a_shell_reads_each_word_as_it_is(void **state)
     assert_one_word(long_word);
 }
 
-static void a_terminal_is_shown_characters_only(void **state)
+TEST(a_terminal_is_shown_characters_only)
 {
-    (void)state;
     char text[256];
     (void)dig_shell_word("a\x1b[31m\xff\xc2\x9b\r", sizeof text, text);
     for (const char *c = text; *c != '\0'; c += dig_text_character(c)) {
@@ -110,9 +108,8 @@ static void a_terminal_is_shown_characters_only(void **state)
     }
 }
 
-static void a_plain_word_stands_as_it_is_and_another_between_quotes(void **state)
+TEST(a_plain_word_stands_as_it_is_and_another_between_quotes)
 {
-    (void)state;
     char text[64];
     assert_int_equal(dig_shell_word("a/b.csv", sizeof text, text), 7);
     assert_string_equal(text, "a/b.csv");
@@ -120,22 +117,10 @@ static void a_plain_word_stands_as_it_is_and_another_between_quotes(void **state
     assert_string_equal(text, "'a b'");
 }
 
-static void a_text_too_short_is_told_by_the_length_and_ends(void **state)
+TEST(a_text_too_short_is_told_by_the_length_and_ends)
 {
-    (void)state;
     char text[8] = "xxxxxxx";
     assert_int_equal(dig_shell_word("it's me", 5, text), 12);
     assert_string_equal(text, "'it'");
     assert_int_equal(text[5], 'x');
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_shell_reads_each_word_as_it_is),
-        cmocka_unit_test(a_terminal_is_shown_characters_only),
-        cmocka_unit_test(a_plain_word_stands_as_it_is_and_another_between_quotes),
-        cmocka_unit_test(a_text_too_short_is_told_by_the_length_and_ends),
-    };
-    return cmocka_run_group_tests_name("shell", tests, NULL, NULL);
 }

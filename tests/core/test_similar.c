@@ -78,9 +78,8 @@ static void expect_other(const struct dig_scene *const scene, const char *const 
     }
 }
 
-static void a_scene_is_similar_to_itself_at_any_size(void **state)
+TEST(a_scene_is_similar_to_itself_at_any_size)
 {
-    (void)state;
     const struct dig_scene own = rig();
     for (int i = 0; i < 3; i++) {
         const double           l = (double[]){ 1.0, 4.0, 0.0625 }[i];
@@ -100,9 +99,8 @@ static void a_scene_is_similar_to_itself_at_any_size(void **state)
     expect_similar(&moved);
 }
 
-static void each_length_may_be_four_per_cent_off_and_not_six(void **state)
+TEST(each_length_may_be_four_per_cent_off_and_not_six)
 {
-    (void)state;
     struct dig_scene s = rig();
     const struct {
         const char *key;
@@ -128,9 +126,8 @@ static void each_length_may_be_four_per_cent_off_and_not_six(void **state)
     }
 }
 
-static void every_point_of_the_outline_counts_and_how_many_there_are_does_not(void **state)
+TEST(every_point_of_the_outline_counts_and_how_many_there_are_does_not)
 {
-    (void)state;
     // Each is moved away from the bucket's middle, by a twelfth of its length.
     for (size_t p = 1; p < 5; p++) {
         for (int i = 0; i < 2; i++) {
@@ -163,17 +160,15 @@ static void every_point_of_the_outline_counts_and_how_many_there_are_does_not(vo
     expect_other(&s, "bucket.profile_m");
 }
 
-static void walls_are_not_sides_that_are_one(void **state)
+TEST(walls_are_not_sides_that_are_one)
 {
-    (void)state;
     struct dig_scene s = rig();
     s.bed.periodic_y   = true;
     expect_other(&s, "bed.periodic_y: no walls in y, expected walls");
 }
 
-static void contacts_may_be_somewhat_softer_and_are_to_scale(void **state)
+TEST(contacts_may_be_somewhat_softer_and_are_to_scale)
 {
-    (void)state;
     struct dig_scene s = rig();
     s.material.young_Pa *= 1.7;
     expect_similar(&s);
@@ -198,9 +193,8 @@ static void contacts_may_be_somewhat_softer_and_are_to_scale(void **state)
     assert_int_equal(dig_scene_similar(&s, &own, &e), DIG_OK);
 }
 
-static void a_trajectory_is_where_the_tables_is_whatever_its_pace(void **state)
+TEST(a_trajectory_is_where_the_tables_is_whatever_its_pace)
 {
-    (void)state;
     struct dig_scene s = rig();
     for (size_t i = 0; i < 2; i++) { // twice as fast
         s.trajectory[0].phase[i].duration_s /= 2.0;
@@ -239,9 +233,8 @@ static void a_trajectory_is_where_the_tables_is_whatever_its_pace(void **state)
     expect_similar(&s);
 }
 
-static void what_is_in_the_bed_is_left_to_the_trace(void **state)
+TEST(what_is_in_the_bed_is_left_to_the_trace)
 {
-    (void)state;
     struct dig_scene s     = rig();
     s.laws.cohesion_Jpm3   = 1e5;
     s.bed.earlier_digs     = 2;
@@ -249,18 +242,4 @@ static void what_is_in_the_bed_is_left_to_the_trace(void **state)
     s.material.restitution = 0.5;
     s.packing.settle_s     = 3.0;
     expect_similar(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_scene_is_similar_to_itself_at_any_size),
-        cmocka_unit_test(each_length_may_be_four_per_cent_off_and_not_six),
-        cmocka_unit_test(every_point_of_the_outline_counts_and_how_many_there_are_does_not),
-        cmocka_unit_test(walls_are_not_sides_that_are_one),
-        cmocka_unit_test(contacts_may_be_somewhat_softer_and_are_to_scale),
-        cmocka_unit_test(a_trajectory_is_where_the_tables_is_whatever_its_pace),
-        cmocka_unit_test(what_is_in_the_bed_is_left_to_the_trace),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

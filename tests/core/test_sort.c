@@ -6,9 +6,8 @@
 
 #include <math.h>
 
-static void numbers_come_out_in_order_each_as_often_as_it_was(void **state)
+TEST(numbers_come_out_in_order_each_as_often_as_it_was)
 {
-    (void)state;
     double value[] = { 3.0, -INFINITY, 0.5, 3.0, INFINITY, -2.0 };
     dig_sort(6, value);
     const double expected[] = { -INFINITY, -2.0, 0.5, 3.0, 3.0, INFINITY };
@@ -16,20 +15,10 @@ static void numbers_come_out_in_order_each_as_often_as_it_was(void **state)
     dig_sort(0, NULL);
 }
 
-static void the_median_has_as_many_below_as_above(void **state)
+TEST(the_median_has_as_many_below_as_above)
 {
-    (void)state;
     double odd[]  = { 9.0, 1.0, 5.0 };
     double even[] = { 4.0, 1.0, 3.0, 2.0 };
     assert_close(dig_sort_median(3, odd), 5.0, 0.0);
     assert_close(dig_sort_median(4, even), 3.0, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_come_out_in_order_each_as_often_as_it_was),
-        cmocka_unit_test(the_median_has_as_many_below_as_above),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static const char *text_of(const struct dig_material *const grain, const double 
     return text;
 }
 
-static void a_bed_that_was_seen_to_lie_still_is_passed(void **state)
+TEST(a_bed_that_was_seen_to_lie_still_is_passed)
 {
-    (void)state;
     const double still_s[] = { 0.0, 30e-6, 50e-6, 62.5e-6 };
     for (size_t i = 0; i < 4; i++) {
         assert_string_equal(text_of(&rig, 2500.0, still_s[i]), "");
@@ -29,9 +28,8 @@ static void a_bed_that_was_seen_to_lie_still_is_passed(void **state)
     assert_string_equal(text_of(&rig, 1500.0, 38.7e-6), "");
 }
 
-static void a_bed_that_was_seen_to_move_is_told_with_its_gravel(void **state)
+TEST(a_bed_that_was_seen_to_move_is_told_with_its_gravel)
 {
-    (void)state;
     const double moves_s[] = { 80e-6, 100e-6, 120e-6 };
     for (size_t i = 0; i < 3; i++) {
         assert_non_null(strstr(text_of(&rig, 2500.0, moves_s[i]), "gravel of 2500 kg/m3"));
@@ -40,9 +38,8 @@ static void a_bed_that_was_seen_to_move_is_told_with_its_gravel(void **state)
     assert_non_null(strstr(text_of(&rig, 1500.0, 62.5e-6), "62.5 us"));
 }
 
-static void small_and_stiff_grains_bear_less(void **state)
+TEST(small_and_stiff_grains_bear_less)
 {
-    (void)state;
     struct dig_material grain = rig;
     grain.diameter_m          = 0.5 * rig.diameter_m;
     assert_string_not_equal(text_of(&grain, 2500.0, 62.5e-6), "");
@@ -51,22 +48,10 @@ static void small_and_stiff_grains_bear_less(void **state)
     assert_string_not_equal(text_of(&grain, 2500.0, 62.5e-6), "");
 }
 
-static void springs_that_go_with_the_density_bear_the_same_step(void **state)
+TEST(springs_that_go_with_the_density_bear_the_same_step)
 {
-    (void)state;
     struct dig_material grain = rig;
     grain.young_at_kgpm3      = 2500.0;
     assert_string_equal(text_of(&grain, 1500.0, 62.5e-6), "");
     assert_non_null(strstr(text_of(&grain, 1500.0, 80e-6), "gravel of 1500 kg/m3"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_bed_that_was_seen_to_lie_still_is_passed),
-        cmocka_unit_test(a_bed_that_was_seen_to_move_is_told_with_its_gravel),
-        cmocka_unit_test(small_and_stiff_grains_bear_less),
-        cmocka_unit_test(springs_that_go_with_the_density_bear_the_same_step),
-    };
-    return cmocka_run_group_tests_name("table_step", tests, NULL, NULL);
 }

@@ -9,9 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void a_list_has_commas_between_its_words_and_ends_where_there_is_no_room(void **state)
+TEST(a_list_has_commas_between_its_words_and_ends_where_there_is_no_room)
 {
-    (void)state;
     char list[12] = "";
     dig_text_list(sizeof list, list, "boom");
     assert_string_equal(list, "boom");
@@ -23,17 +22,15 @@ static void a_list_has_commas_between_its_words_and_ends_where_there_is_no_room(
     assert_string_equal(list, "boom, arm, ");
 }
 
-static void a_copy_is_cut_and_clean(void **state)
+TEST(a_copy_is_cut_and_clean)
 {
-    (void)state;
     char to[8] = "";
     dig_text_copy(sizeof to, to, "ab\x1b[31mcd");
     assert_string_equal(to, "ab?[31m");
 }
 
-static void characters_are_told_from_bytes_that_are_none(void **state)
+TEST(characters_are_told_from_bytes_that_are_none)
 {
-    (void)state;
     static const struct {
         const char *text;
         size_t      bytes;
@@ -65,17 +62,15 @@ static void characters_are_told_from_bytes_that_are_none(void **state)
     }
 }
 
-static void cleaned_text_keeps_its_length_and_its_characters(void **state)
+TEST(cleaned_text_keeps_its_length_and_its_characters)
 {
-    (void)state;
     char text[] = "a\x1b[2J\xc3\xa9\xff\n\xc2\x9b z\xe2\x82";
     dig_text_clean(text);
     assert_string_equal(text, "a?[2J\xc3\xa9?\n?? z??");
 }
 
-static void an_error_holds_no_escape_sequence_and_no_half_character(void **state)
+TEST(an_error_holds_no_escape_sequence_and_no_half_character)
 {
-    (void)state;
     struct dig_error error = { "" };
     assert_int_equal(
         dig_error_set(&error, DIG_EINVAL, "\"%s\", expected a name", "\x1b]0;owned\x07\x9b"),
@@ -100,18 +95,16 @@ static void assert_json(const char *const text, const char *const expected)
     assert_string_equal(said, expected);
 }
 
-static void json_strings_end_where_they_should_and_are_utf8(void **state)
+TEST(json_strings_end_where_they_should_and_are_utf8)
 {
-    (void)state;
     assert_json("plain \xc3\xa9", "\"plain \xc3\xa9\"");
     assert_json("a\"b\\c\nd\t", "\"a\\\"b\\\\c\\u000ad\\u0009\"");
     assert_json("\x1b\x7f\xc2\x9b", "\"\\u001b\\u007f\\u009b\"");
     assert_json("\xff\xc3", "\"\xef\xbf\xbd\xef\xbf\xbd\"");
 }
 
-static void a_text_put_is_one_line_of_characters(void **state)
+TEST(a_text_put_is_one_line_of_characters)
 {
-    (void)state;
     char  said[64] = "";
     FILE *to       = fmemopen(said, sizeof said, "w");
     assert_non_null(to);
@@ -120,9 +113,8 @@ static void a_text_put_is_one_line_of_characters(void **state)
     assert_string_equal(said, "a?b?c?[0m? \xe2\x82\xac");
 }
 
-static void what_is_printed_for_people_holds_no_escape_sequence(void **state)
+TEST(what_is_printed_for_people_holds_no_escape_sequence)
 {
-    (void)state;
     char       *bytes = NULL;
     size_t      size  = 0;
     FILE *const to    = open_memstream(&bytes, &size);
@@ -137,9 +129,8 @@ static void what_is_printed_for_people_holds_no_escape_sequence(void **state)
     free(bytes);
 }
 
-static void a_time_is_told_in_utc(void **state)
+TEST(a_time_is_told_in_utc)
 {
-    (void)state;
     char text[21] = "?";
     dig_text_utc(951782399, sizeof text, text); // date -u -d @951782399 of coreutils
     assert_string_equal(text, "2000-02-28T23:59:59Z");
@@ -149,20 +140,4 @@ static void a_time_is_told_in_utc(void **state)
     assert_string_equal(text, "1969-12-31T23:59:59Z");
     dig_text_utc(INT64_MAX, sizeof text, text);
     assert_string_equal(text, "");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_time_is_told_in_utc),
-        cmocka_unit_test(a_list_has_commas_between_its_words_and_ends_where_there_is_no_room),
-        cmocka_unit_test(a_copy_is_cut_and_clean),
-        cmocka_unit_test(characters_are_told_from_bytes_that_are_none),
-        cmocka_unit_test(cleaned_text_keeps_its_length_and_its_characters),
-        cmocka_unit_test(json_strings_end_where_they_should_and_are_utf8),
-        cmocka_unit_test(a_text_put_is_one_line_of_characters),
-        cmocka_unit_test(an_error_holds_no_escape_sequence_and_no_half_character),
-        cmocka_unit_test(what_is_printed_for_people_holds_no_escape_sequence),
-    };
-    return cmocka_run_group_tests_name("text", tests, NULL, NULL);
 }

@@ -2,9 +2,8 @@
 
 #include "tests/digreport/shift_log.h"
 
-static void a_shift_has_its_digs_gravels_and_troubles(void **state)
+TEST_WITH(a_shift_has_its_digs_gravels_and_troubles, fresh, NULL)
 {
-    (void)state;
     make_day();
     read_log("day.lcm");
     assert_int_equal(shift.digs, 2);
@@ -36,9 +35,8 @@ static void a_shift_has_its_digs_gravels_and_troubles(void **state)
     assert_int_equal(shift.last_us - shift.first_us, 8 * MINUTE);
 }
 
-static void a_second_log_begins_anew(void **state)
+TEST_WITH(a_second_log_begins_anew, fresh, NULL)
 {
-    (void)state;
     make_day();
     read_log("day.lcm");
     lcm_eventlog_t *const log = begin("next.lcm");
@@ -65,9 +63,8 @@ static void a_second_log_begins_anew(void **state)
 
 // HEALTH tells nothing of the first of four digs, and not which of the last two is which: MATCH
 // does.
-static void how_a_dig_ended_is_told_where_the_log_tells_it(void **state)
+TEST_WITH(how_a_dig_ended_is_told_where_the_log_tells_it, fresh, NULL)
 {
-    (void)state;
     lcm_eventlog_t *const log = begin("ends.lcm");
     digsight_health_t     h   = healthy();
     digsight_match_t      m   = a_match(START_us + 4 * MINUTE, 0.4, true, no_text);
@@ -94,9 +91,8 @@ static void how_a_dig_ended_is_told_where_the_log_tells_it(void **state)
     }
 }
 
-static void a_log_that_is_none_or_damaged_is_refused(void **state)
+TEST_WITH(a_log_that_is_none_or_damaged_is_refused, fresh, NULL)
 {
-    (void)state;
     struct dig_error error = { "" };
     assert_int_equal(digreport_shift_log(&shift, scratch_path("none.lcm"), &error), DIG_EIO);
     assert_contains(error.text, "none.lcm: No such file");
@@ -117,15 +113,10 @@ static void a_log_that_is_none_or_damaged_is_refused(void **state)
     free(day);
 }
 
-int main(void)
+static int finish_all(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_shift_has_its_digs_gravels_and_troubles, fresh),
-        cmocka_unit_test_setup(a_second_log_begins_anew, fresh),
-        cmocka_unit_test_setup(how_a_dig_ended_is_told_where_the_log_tells_it, fresh),
-        cmocka_unit_test_setup(a_log_that_is_none_or_damaged_is_refused, fresh),
-    };
-    const int failed = cmocka_run_group_tests_name("shift", tests, scratch_setup, scratch_teardown);
     digreport_shift_finish(&shift);
-    return failed;
+    return scratch_teardown(state);
 }
+
+TESTS_WITH(scratch_setup, finish_all)

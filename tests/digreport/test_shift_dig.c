@@ -79,9 +79,8 @@ static bool dig_two_seconds(const int32_t gravel_of_dig)
     return take(&e);
 }
 
-static void a_dig_is_from_contact_to_exit(void **state)
+TEST_WITH(a_dig_is_from_contact_to_exit, fresh, NULL)
 {
-    (void)state;
     assert_true(dig_two_seconds(0));
     assert_int_equal(dig.number, 1);
     assert_int_equal(dig.time_us, 1000000);
@@ -91,9 +90,8 @@ static void a_dig_is_from_contact_to_exit(void **state)
 }
 
 // 1000 measured where 2000 +- 100 was predicted: off by 1000 of 1000, floor 100 of 1000.
-static void the_error_is_that_of_the_first_prediction_made_in_the_dig(void **state)
+TEST_WITH(the_error_is_that_of_the_first_prediction_made_in_the_dig, fresh, NULL)
 {
-    (void)state;
     assert_true(dig_two_seconds(0));
     assert_close(dig.error, 1.0, 1e-9);
     assert_close(dig.noise_floor, 0.1, 1e-9);
@@ -101,9 +99,8 @@ static void the_error_is_that_of_the_first_prediction_made_in_the_dig(void **sta
     assert_close(dig.predicted_energy_sigma_J, 300.0, 0.0);
 }
 
-static void a_prediction_from_the_dig_itself_does_not_judge_it(void **state)
+TEST_WITH(a_prediction_from_the_dig_itself_does_not_judge_it, fresh, NULL)
 {
-    (void)state;
     assert_true(dig_two_seconds(1)); // this dig will be number 1
     assert_true(isnan(dig.error) && isnan(dig.noise_floor) && isnan(dig.predicted_peak_Nm) &&
                 isnan(dig.predicted_energy_J));
@@ -111,9 +108,8 @@ static void a_prediction_from_the_dig_itself_does_not_judge_it(void **state)
 
 // The pin goes by 2 m against the soil's 300 N in x, down 1 m against 500 N, and curls by 0.5 rad
 // against 1000 N·m: 600 + 500 + 500 J.
-static void energy_is_the_work_on_the_soil(void **state)
+TEST_WITH(energy_is_the_work_on_the_soil, fresh, NULL)
 {
-    (void)state;
     const int n = 11;
     for (int i = 0; i < n; i++) {
         const double        part = i / 10.0;
@@ -145,9 +141,8 @@ static void energy_is_the_work_on_the_soil(void **state)
 }
 
 // 0, 0, 900, 0, 0 every 40 ms, averaged over +-50 ms: 300 at most.
-static void the_peak_is_that_of_the_moving_average(void **state)
+TEST_WITH(the_peak_is_that_of_the_moving_average, fresh, NULL)
 {
-    (void)state;
     for (int i = 0; i < 5; i++) {
         const digsight_estimate_t e = estimate_at(1000 + 40 * i, 2, i == 2 ? 900.0 : 0.0);
         assert_false(take(&e));
@@ -158,9 +153,8 @@ static void the_peak_is_that_of_the_moving_average(void **state)
     assert_close(dig.peak_Nm, 300.0, 1e-9);
 }
 
-static void a_contact_that_is_lost_is_no_dig(void **state)
+TEST_WITH(a_contact_that_is_lost_is_no_dig, fresh, NULL)
 {
-    (void)state;
     digsight_estimate_t e = estimate_at(1000, 1, 1000.0);
     assert_false(take(&e));
     e = estimate_at(1100, 1, 1000.0);
@@ -172,9 +166,8 @@ static void a_contact_that_is_lost_is_no_dig(void **state)
     assert_false(take(&e));
 }
 
-static void numbers_and_names_of_others_are_not_taken(void **state)
+TEST_WITH(numbers_and_names_of_others_are_not_taken, fresh, NULL)
 {
-    (void)state;
     static const double moments[] = { (double)NAN, (double)INFINITY, -1e12, 1000.0, 1000.0 };
     char                name[]    = "<script>";
     digsight_estimate_t e;
@@ -203,18 +196,11 @@ static void numbers_and_names_of_others_are_not_taken(void **state)
     assert_true(take(&e));
 }
 
-int main(void)
+static int finish_all(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_dig_is_from_contact_to_exit, fresh),
-        cmocka_unit_test_setup(the_error_is_that_of_the_first_prediction_made_in_the_dig, fresh),
-        cmocka_unit_test_setup(a_prediction_from_the_dig_itself_does_not_judge_it, fresh),
-        cmocka_unit_test_setup(energy_is_the_work_on_the_soil, fresh),
-        cmocka_unit_test_setup(the_peak_is_that_of_the_moving_average, fresh),
-        cmocka_unit_test_setup(a_contact_that_is_lost_is_no_dig, fresh),
-        cmocka_unit_test_setup(numbers_and_names_of_others_are_not_taken, fresh),
-    };
-    const int failed = cmocka_run_group_tests_name("shift_dig", tests, NULL, NULL);
+    (void)state;
     digreport_track_finish(&track);
-    return failed;
+    return 0;
 }
+
+TESTS_WITH(NULL, finish_all)

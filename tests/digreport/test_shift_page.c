@@ -13,9 +13,8 @@ static char *text_of(void (*const put)(const struct digreport_shift *, FILE *))
     return text;
 }
 
-static void one_sentence_says_what_came_out(void **state)
+TEST_WITH(one_sentence_says_what_came_out, fresh, NULL)
 {
-    (void)state;
     assert_string_equal(text_of(digreport_shift_sentence),
                         "0 digs in 1 min; no gravel was known at the end; nothing was predicted; "
                         "health: 0 events.");
@@ -28,9 +27,8 @@ static void one_sentence_says_what_came_out(void **state)
         "predictions, off by 22 % (median; noise floor 10 %); health: 2 events.");
 }
 
-static void the_csv_has_a_line_a_dig(void **state)
+TEST_WITH(the_csv_has_a_line_a_dig, fresh, NULL)
 {
-    (void)state;
     make_day();
     read_log("day.lcm");
     const char *const csv = text_of(digreport_shift_csv);
@@ -42,9 +40,8 @@ static void the_csv_has_a_line_a_dig(void **state)
     assert_contains(csv, "\n2023-11-14T22:18:20Z,6,actual,aborted,1,12500,");
 }
 
-static void json_holds_digs_gravels_and_troubles(void **state)
+TEST_WITH(json_holds_digs_gravels_and_troubles, fresh, NULL)
 {
-    (void)state;
     make_day();
     read_log("day.lcm");
     const char *const json = text_of(digreport_shift_json);
@@ -68,9 +65,8 @@ static char *page_of(const struct digreport_shift_subject *const subject)
     return scratch_read(scratch_path("page.html"), &size);
 }
 
-static void the_page_stands_alone_and_holds_the_numbers(void **state)
+TEST_WITH(the_page_stands_alone_and_holds_the_numbers, fresh, NULL)
 {
-    (void)state;
     make_day();
     read_log("day.lcm");
     const struct digreport_shift_subject subject = {
@@ -99,9 +95,8 @@ static void the_page_stands_alone_and_holds_the_numbers(void **state)
 }
 
 // Where nothing tells the machine's size, all is at its scale.
-static void a_machine_of_unknown_size_has_a_page_too(void **state)
+TEST_WITH(a_machine_of_unknown_size_has_a_page_too, fresh, NULL)
 {
-    (void)state;
     digreport_shift_begin(&shift, 0.0);
     make_day();
     read_log("day.lcm");
@@ -117,9 +112,8 @@ static void a_machine_of_unknown_size_has_a_page_too(void **state)
     free(page);
 }
 
-static void a_shift_without_anything_is_a_page(void **state)
+TEST_WITH(a_shift_without_anything_is_a_page, fresh, NULL)
 {
-    (void)state;
     const struct digreport_shift_subject subject = { .title = "", .machine = "", .scene = "" };
     char *const                          page    = page_of(&subject);
     assert_contains(page, "No dig was finished.");
@@ -129,9 +123,8 @@ static void a_shift_without_anything_is_a_page(void **state)
 }
 
 // Text of messages, of others on the network, and of the machine that logged.
-static void no_text_of_a_message_is_markup_or_somebodys_path(void **state)
+TEST_WITH(no_text_of_a_message_is_markup_or_somebodys_path, fresh, NULL)
 {
-    (void)state;
     lcm_eventlog_t *const log = begin("hostile.lcm");
     digsight_health_t     h   = healthy();
     h.note = h.state = h.input = h.table = hostile;
@@ -176,19 +169,10 @@ static void no_text_of_a_message_is_markup_or_somebodys_path(void **state)
     free(page);
 }
 
-int main(void)
+static int finish_all(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(one_sentence_says_what_came_out, fresh),
-        cmocka_unit_test_setup(the_csv_has_a_line_a_dig, fresh),
-        cmocka_unit_test_setup(json_holds_digs_gravels_and_troubles, fresh),
-        cmocka_unit_test_setup(the_page_stands_alone_and_holds_the_numbers, fresh),
-        cmocka_unit_test_setup(a_machine_of_unknown_size_has_a_page_too, fresh),
-        cmocka_unit_test_setup(a_shift_without_anything_is_a_page, fresh),
-        cmocka_unit_test_setup(no_text_of_a_message_is_markup_or_somebodys_path, fresh),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("shift_page", tests, scratch_setup, scratch_teardown);
     digreport_shift_finish(&shift);
-    return failed;
+    return scratch_teardown(state);
 }
+
+TESTS_WITH(scratch_setup, finish_all)

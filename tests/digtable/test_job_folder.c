@@ -38,9 +38,8 @@ static int gone(void **state)
     return scratch_teardown(state);
 }
 
-static void table_and_folder_mean_the_same(void **state)
+TEST_WITH(table_and_folder_mean_the_same, fresh, gone)
 {
-    (void)state;
     static const char *const names[] = { "t.sqlite", "t.sqlite.jobs", "t.sqlite.jobs/",
                                          "t.sqlite.jobs///" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -60,9 +59,8 @@ static void table_and_folder_mean_the_same(void **state)
     }
 }
 
-static void what_names_no_table_is_refused(void **state)
+TEST_WITH(what_names_no_table_is_refused, fresh, gone)
 {
-    (void)state;
     static const char *const names[] = { "", ".", "..", "a/..", "two\nlines", "\033[31m", "none" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         struct dig_job_folder folder = { .lock_fd = 77 };
@@ -74,9 +72,8 @@ static void what_names_no_table_is_refused(void **state)
 }
 
 // Its files' names are longer yet.
-static void a_path_without_room_is_refused(void **state)
+TEST_WITH(a_path_without_room_is_refused, fresh, gone)
 {
-    (void)state;
     static char           name[2 * PATH_MAX];
     struct dig_job_folder folder;
     struct dig_error      error = { "" };
@@ -88,15 +85,4 @@ static void a_path_without_room_is_refused(void **state)
         assert_int_not_equal(dig_job_folder_open(name, &folder, &error), DIG_OK);
         name[length] = at;
     }
-}
-
-int main(void)
-{
-#define EACH(test) cmocka_unit_test_setup_teardown(test, fresh, gone)
-    const struct CMUnitTest tests[] = {
-        EACH(table_and_folder_mean_the_same),
-        EACH(what_names_no_table_is_refused),
-        EACH(a_path_without_room_is_refused),
-    };
-    return cmocka_run_group_tests_name("job_folder", tests, NULL, NULL);
 }

@@ -89,9 +89,8 @@ static struct dig_job_state look(void)
     return state;
 }
 
-static void a_shard_is_what_its_files_and_locks_say(void **unused)
+TEST_WITH(a_shard_is_what_its_files_and_locks_say, fresh, gone)
 {
-    (void)unused;
     char path[PATH_MAX];
     touch("shards", 1, "sqlite", "");
     touch("log", 1, "log", "all went well\n");
@@ -116,9 +115,8 @@ static void a_shard_is_what_its_files_and_locks_say(void **unused)
     (void)close(fd);
 }
 
-static void with_the_table_all_is_done(void **unused)
+TEST_WITH(with_the_table_all_is_done, fresh, gone)
 {
-    (void)unused;
     touch("log", 2, "log", "why\n");
     touch("log", DIG_JOB_MERGE, "log", "why\n");
     struct dig_job_state state = look();
@@ -131,9 +129,8 @@ static void with_the_table_all_is_done(void **unused)
     dig_job_state_finish(&state);
 }
 
-static void the_last_words_are_the_logs_last_line(void **unused)
+TEST_WITH(the_last_words_are_the_logs_last_line, fresh, gone)
 {
-    (void)unused;
     char words[40] = "as it was";
     dig_job_last_words(&folder, 2, sizeof words, words);
     assert_string_equal(words, "");
@@ -144,9 +141,8 @@ static void the_last_words_are_the_logs_last_line(void **unused)
 
 // 14 digs: 4 of a complete shard, 3 of one that grows, at 10 and 30 s each; two tasks run, and one
 // of them has all of its four digs before it.
-static void time_left_is_that_of_the_digs_left(void **unused)
+TEST_WITH(time_left_is_that_of_the_digs_left, fresh, gone)
 {
-    (void)unused;
     struct dig_job_progress p;
     enum dig_shard_state    shard[TASKS + 1] = {
            [1] = DIG_SHARD_DONE,
@@ -178,16 +174,4 @@ static void time_left_is_that_of_the_digs_left(void **unused)
     dig_job_progress_read(&folder, &state, &p);
     assert_int_equal(p.digs_done, 14);
     assert_close(p.left_s, 0.0, 0.0);
-}
-
-int main(void)
-{
-#define EACH(test) cmocka_unit_test_setup_teardown(test, fresh, gone)
-    const struct CMUnitTest tests[] = {
-        EACH(a_shard_is_what_its_files_and_locks_say),
-        EACH(with_the_table_all_is_done),
-        EACH(the_last_words_are_the_logs_last_line),
-        EACH(time_left_is_that_of_the_digs_left),
-    };
-    return cmocka_run_group_tests_name("job_state", tests, NULL, NULL);
 }

@@ -28,18 +28,16 @@ static int forget_plan(void **state)
     return 0;
 }
 
-static void a_plan_is_the_grids_points_in_the_scenes_trajectories(void **state)
+TEST(a_plan_is_the_grids_points_in_the_scenes_trajectories)
 {
-    (void)state;
     assert_int_equal(plan.points, 6);
     assert_int_equal(plan.trajectories, 1);
     assert_int_equal(plan.point[5].packings, 2);
     assert_int_equal(plan.shards, 0);
 }
 
-static void what_cannot_be_read_writes_nothing(void **state)
+TEST(what_cannot_be_read_writes_nothing)
 {
-    (void)state;
     struct dig_plan        before = plan;
     struct dig_plan_point *kept   = point;
     struct dig_error       error  = { "" };
@@ -53,9 +51,8 @@ static void what_cannot_be_read_writes_nothing(void **state)
 }
 
 // Each change but the last makes other runs, or the same in other shards.
-static void plans_of_other_digs_have_other_hashes(void **state)
+TEST(plans_of_other_digs_have_other_hashes)
 {
-    (void)state;
     enum { CHANGES = 10 };
     char hash[CHANGES + 1][65];
     for (int change = 0; change <= CHANGES; change++) {
@@ -91,12 +88,4 @@ static void plans_of_other_digs_have_other_hashes(void **state)
     assert_string_equal(hash[1], hash[0]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plan_is_the_grids_points_in_the_scenes_trajectories),
-        cmocka_unit_test(what_cannot_be_read_writes_nothing),
-        cmocka_unit_test(plans_of_other_digs_have_other_hashes),
-    };
-    return cmocka_run_group_tests_name("plan", tests, read_plan, forget_plan);
-}
+TESTS_WITH(read_plan, forget_plan)

@@ -22,9 +22,8 @@ static int done(void **state)
     return fclose(out);
 }
 
-static void arguments_arrive_as_they_are(void **state)
+TEST_WITH(arguments_arrive_as_they_are, fresh, done)
 {
-    (void)state;
     const char *const        argv[] = { "printf", "%s|", "a b", "it's \"$HOME\"; `x` *", "", NULL };
     const struct dig_process process = { .argv = argv, .out = out };
     char                     line[80];
@@ -33,9 +32,8 @@ static void arguments_arrive_as_they_are(void **state)
     assert_string_equal(line, "a b|it's \"$HOME\"; `x` *||");
 }
 
-static void a_program_that_is_not_there_is_bad_input(void **state)
+TEST_WITH(a_program_that_is_not_there_is_bad_input, fresh, done)
 {
-    (void)state;
     const char *const        argv[]  = { "no-such-program-anywhere", NULL };
     const struct dig_process process = { .argv = argv, .out = out };
     struct dig_error         error   = { "" };
@@ -43,9 +41,8 @@ static void a_program_that_is_not_there_is_bad_input(void **state)
     assert_contains(error.text, "no-such-program-anywhere: No such file");
 }
 
-static void one_that_fails_is_told_by_its_last_words(void **state)
+TEST_WITH(one_that_fails_is_told_by_its_last_words, fresh, done)
 {
-    (void)state;
     const char *const        argv[]  = { "sh", "-c",
                                          "echo out; echo one >&2; echo two >&2; echo >&2; exit 3", NULL };
     const struct dig_process process = { .argv = argv, .out = out };
@@ -54,9 +51,8 @@ static void one_that_fails_is_told_by_its_last_words(void **state)
     assert_string_equal(error.text, "sh: two");
 }
 
-static void part_of_the_environment_is_kept_from_it(void **state)
+TEST_WITH(part_of_the_environment_is_kept_from_it, fresh, done)
 {
-    (void)state;
     assert_int_equal(setenv("DIG_SEEN", "seen", 1), 0);
     assert_int_equal(setenv("HIDE_THIS", "hidden", 1), 0);
     const char *const  argv[] = { "sh", "-c", "echo $DIG_SEEN $HIDE_THIS.", NULL };
@@ -71,9 +67,8 @@ static void part_of_the_environment_is_kept_from_it(void **state)
     assert_string_equal(line, "seen .");
 }
 
-static void it_reads_what_it_is_given(void **state)
+TEST_WITH(it_reads_what_it_is_given, fresh, done)
 {
-    (void)state;
     FILE *const in = tmpfile();
     char        line[80];
     assert_non_null(in);
@@ -96,9 +91,8 @@ static void request_stop(const int signal)
 }
 
 // The shell's own child would sleep on for an hour; once it is there, the shell asks to be stopped.
-static void stopped_it_ends_with_all_it_started(void **state)
+TEST_WITH(stopped_it_ends_with_all_it_started, fresh, done)
 {
-    (void)state;
     const struct sigaction action = { .sa_handler = request_stop };
     const char *const argv[] = { "sh", "-c", "sleep 3600 & echo $!; kill -USR1 $PPID; wait", NULL };
     const struct dig_process process = { .argv = argv, .out = out, .stop = &stop };
@@ -117,28 +111,12 @@ static void stopped_it_ends_with_all_it_started(void **state)
     }
 }
 
-static void the_last_line_is_cut_and_clean(void **state)
+TEST_WITH(the_last_line_is_cut_and_clean, fresh, done)
 {
-    (void)state;
     char line[8];
     dig_process_last_line(out, sizeof line, line);
     assert_string_equal(line, "");
     assert_true(fputs("first\na\033[31mlong line\n \t\n\n", out) >= 0);
     dig_process_last_line(out, sizeof line, line);
     assert_string_equal(line, "a?[31ml");
-}
-
-int main(void)
-{
-#define EACH(test) cmocka_unit_test_setup_teardown(test, fresh, done)
-    const struct CMUnitTest tests[] = {
-        EACH(arguments_arrive_as_they_are),
-        EACH(a_program_that_is_not_there_is_bad_input),
-        EACH(one_that_fails_is_told_by_its_last_words),
-        EACH(part_of_the_environment_is_kept_from_it),
-        EACH(it_reads_what_it_is_given),
-        EACH(stopped_it_ends_with_all_it_started),
-        EACH(the_last_line_is_cut_and_clean),
-    };
-    return cmocka_run_group_tests_name("process", tests, NULL, NULL);
 }

@@ -9,9 +9,8 @@
 
 enum { TASKS = 12 };
 
-static void runs_of_shards_are_named_by_their_ends(void **state)
+TEST(runs_of_shards_are_named_by_their_ends)
 {
-    (void)state;
     static const struct {
         const char *submit; // shard 1 first
         const char *ranges;
@@ -47,9 +46,8 @@ static void hear(const char *const lines, enum dig_shard_state shard[const TASKS
     (void)fclose(file);
 }
 
-static void what_squeue_lists_is_pending_or_running(void **state)
+TEST(what_squeue_lists_is_pending_or_running)
 {
-    (void)state;
     enum dig_shard_state shard[TASKS + 1];
     hear("1 PD\n2 R\n12 CG\n3 CF\n4 S\nN/A PD\n", shard);
     static const enum dig_shard_state wanted[TASKS + 1] = {
@@ -65,22 +63,11 @@ static void what_squeue_lists_is_pending_or_running(void **state)
     assert_int_equal(shard[DIG_JOB_MERGE], DIG_SHARD_RUNNING);
 }
 
-static void what_is_no_shard_is_passed_over(void **state)
+TEST(what_is_no_shard_is_passed_over)
 {
-    (void)state;
     enum dig_shard_state shard[TASKS + 1];
     hear("\n0 R\n13 R\n99999999999999999999 R\n-1 R\nR\n7\n7x R\nslurm_load_jobs error\n", shard);
     for (size_t task = 0; task <= TASKS; task++) {
         assert_int_equal(shard[task], DIG_SHARD_WAITING);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(runs_of_shards_are_named_by_their_ends),
-        cmocka_unit_test(what_squeue_lists_is_pending_or_running),
-        cmocka_unit_test(what_is_no_shard_is_passed_over),
-    };
-    return cmocka_run_group_tests_name("slurm", tests, NULL, NULL);
 }

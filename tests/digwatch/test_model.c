@@ -14,9 +14,8 @@ static int fresh(void **state)
     return 0;
 }
 
-static void a_prediction_is_read_where_the_bucket_is(void **state)
+TEST_WITH(a_prediction_is_read_where_the_bucket_is, fresh, NULL)
 {
-    (void)state;
     digsight_estimate_t e = estimate_at(1000000000, 0.25, 3000.0);
     say_estimate(&model, &e);
     assert_true(isnan(model.estimate.predicted_Nm)); // nothing was predicted yet
@@ -45,9 +44,8 @@ static void a_prediction_is_read_where_the_bucket_is(void **state)
     assert_true(isnan(model.estimate.predicted_Nm));
 }
 
-static void the_error_of_a_dig_is_relative_and_stands_until_the_next(void **state)
+TEST_WITH(the_error_of_a_dig_is_relative_and_stands_until_the_next, fresh, NULL)
 {
-    (void)state;
     say_rising_prediction(&model);
     // Measured 3000 and 6000 where 2500 and 5000 are predicted: sqrt((500^2 + 1000^2) / (3000^2 +
     // 6000^2)).
@@ -64,9 +62,8 @@ static void the_error_of_a_dig_is_relative_and_stands_until_the_next(void **stat
     assert_true(isnan(digwatch_error(&model.now)));
 }
 
-static void the_moment_scrolls_in_slots_of_an_eighth_of_a_second(void **state)
+TEST_WITH(the_moment_scrolls_in_slots_of_an_eighth_of_a_second, fresh, NULL)
 {
-    (void)state;
     for (int i = 0; i < 4; i++) { // at 0, 50, 100, 150 ms: three in the first slot, one in the next
         const digsight_estimate_t e = estimate_at(INT64_C(50000000) * i, 0.0, 100.0 * i);
         say_estimate(&model, &e);
@@ -91,9 +88,8 @@ static void the_moment_scrolls_in_slots_of_an_eighth_of_a_second(void **state)
     assert_true(isnan(digwatch_model_slot(&model, DIGWATCH_SLOTS).measured_Nm));
 }
 
-static void a_slot_that_never_ends_counts_no_further_than_it_can(void **state)
+TEST_WITH(a_slot_that_never_ends_counts_no_further_than_it_can, fresh, NULL)
 {
-    (void)state;
     digsight_estimate_t e = estimate_at(1000000000, 0.25, 100.0);
     say_estimate(&model, &e);
     model.slot_rows = INT_MAX - 1; // 100 of them a millisecond, for six hours
@@ -105,9 +101,8 @@ static void a_slot_that_never_ends_counts_no_further_than_it_can(void **state)
     assert_close(digwatch_model_slot(&model, 0).measured_Nm, 100.0, 1e-3);
 }
 
-static void a_counter_has_grown_only_since_we_listen(void **state)
+TEST_WITH(a_counter_has_grown_only_since_we_listen, fresh, NULL)
 {
-    (void)state;
     digsight_health_t h = health_at(1000000000, running_state);
     h.timeouts          = 40;
     say_health(&model, &h);
@@ -128,9 +123,8 @@ static void a_counter_has_grown_only_since_we_listen(void **state)
     assert_int_equal(model.health.grew_ns[timeouts], 2000000000);
 }
 
-static void what_is_no_message_is_counted_and_changes_nothing(void **state)
+TEST_WITH(what_is_no_message_is_counted_and_changes_nothing, fresh, NULL)
 {
-    (void)state;
     const uint8_t     rubbish[64] = { 1, 2, 3 };
     const char *const ours[]      = { "DIGSIGHT_ESTIMATE", "DIGSIGHT_MATCH", "DIGSIGHT_PREDICTION",
                                       "DIGSIGHT_HEALTH" };
@@ -147,9 +141,8 @@ static void what_is_no_message_is_counted_and_changes_nothing(void **state)
 }
 
 // Its own lengths are not believed: one byte too many or too few, or any byte of it another.
-static void a_message_that_is_damaged_is_counted_or_taken_and_no_more(void **state)
+TEST_WITH(a_message_that_is_damaged_is_counted_or_taken_and_no_more, fresh, NULL)
 {
-    (void)state;
     const digsight_health_t h    = health_at(1000000000, running_state);
     const size_t            size = (size_t)digsight_health_t_encoded_size(&h);
     for (size_t length = 0; length <= size + 1; length++) {
@@ -179,9 +172,8 @@ static void a_message_that_is_damaged_is_counted_or_taken_and_no_more(void **sta
     assert_int_equal(model.messages + model.misread, 1 + size + 1 + size);
 }
 
-static void numbers_that_are_none_and_names_that_are_none_are_not_taken(void **state)
+TEST_WITH(numbers_that_are_none_and_names_that_are_none_are_not_taken, fresh, NULL)
 {
-    (void)state;
     digsight_estimate_t e      = estimate_at(1000, (double)NAN, (double)INFINITY);
     char                name[] = "\033[2Jactual";
     e.trajectory               = name;
@@ -220,19 +212,4 @@ static void numbers_that_are_none_and_names_that_are_none_are_not_taken(void **s
     p.from_progress = 0.5;
     say_prediction(&model, &p);
     assert_true(model.any_prediction);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_prediction_is_read_where_the_bucket_is, fresh),
-        cmocka_unit_test_setup(the_error_of_a_dig_is_relative_and_stands_until_the_next, fresh),
-        cmocka_unit_test_setup(the_moment_scrolls_in_slots_of_an_eighth_of_a_second, fresh),
-        cmocka_unit_test_setup(a_slot_that_never_ends_counts_no_further_than_it_can, fresh),
-        cmocka_unit_test_setup(a_counter_has_grown_only_since_we_listen, fresh),
-        cmocka_unit_test_setup(what_is_no_message_is_counted_and_changes_nothing, fresh),
-        cmocka_unit_test_setup(a_message_that_is_damaged_is_counted_or_taken_and_no_more, fresh),
-        cmocka_unit_test_setup(numbers_that_are_none_and_names_that_are_none_are_not_taken, fresh),
-    };
-    return cmocka_run_group_tests_name("digwatch model", tests, NULL, NULL);
 }

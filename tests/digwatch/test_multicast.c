@@ -9,9 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-static void what_is_no_url_of_a_group_is_refused_and_opens_nothing(void **state)
+TEST(what_is_no_url_of_a_group_is_refused_and_opens_nothing)
 {
-    (void)state;
     static const char *const bad[] = {
         "",
         "udpm",
@@ -46,9 +45,8 @@ static void what_is_no_url_of_a_group_is_refused_and_opens_nothing(void **state)
 }
 
 // With a route to the group or without one: it is joined, or said why not.
-static void a_group_is_joined_or_it_is_said_why_not(void **state)
+TEST(a_group_is_joined_or_it_is_said_why_not)
 {
-    (void)state;
     static const char *const good[] = {
         "udpm://",
         "udpm://:7667",
@@ -71,13 +69,4 @@ static void a_group_is_joined_or_it_is_said_why_not(void **state)
             assert_non_null(strstr(error.text, "route"));
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_no_url_of_a_group_is_refused_and_opens_nothing),
-        cmocka_unit_test(a_group_is_joined_or_it_is_said_why_not),
-    };
-    return cmocka_run_group_tests_name("multicast", tests, NULL, NULL);
 }

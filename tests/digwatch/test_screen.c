@@ -47,9 +47,8 @@ static void dig(void)
     say_health(&model, &h);
 }
 
-static void everything_stands_in_80_by_24(void **state)
+TEST_WITH(everything_stands_in_80_by_24, fresh, NULL)
 {
-    (void)state;
     dig();
     const char *const text = screen(24, 80, true, &plain);
     assert_contains(
@@ -68,9 +67,8 @@ static void everything_stands_in_80_by_24(void **state)
 }
 
 // The newest of 142 slots is at the right; a dig of ten seconds takes 81 of them, 41 columns.
-static void the_chart_has_the_measured_the_predicted_and_the_band(void **state)
+TEST_WITH(the_chart_has_the_measured_the_predicted_and_the_band, fresh, NULL)
 {
-    (void)state;
     dig();
     (void)screen(24, 80, true, &plain);
     int measured = 0;
@@ -122,9 +120,8 @@ static void the_chart_has_the_measured_the_predicted_and_the_band(void **state)
     }
 }
 
-static void health_says_what_is_wrong_and_what_to_do(void **state)
+TEST_WITH(health_says_what_is_wrong_and_what_to_do, fresh, NULL)
 {
-    (void)state;
     assert_contains(screen(24, 80, true, &plain), "Health    no message of a daemon was heard yet");
     digsight_health_t h = health_at(1000000000, waiting_state);
     say_health(&model, &h);
@@ -161,9 +158,8 @@ static void health_says_what_is_wrong_and_what_to_do(void **state)
     assert_contains(text, ", at its end");
 }
 
-static void no_text_of_a_message_moves_the_cursor(void **state)
+TEST_WITH(no_text_of_a_message_moves_the_cursor, fresh, NULL)
 {
-    (void)state;
     char              hostile[] = "\033[2J\r\n\t\007\x9b"
                                   "31m\xc2\x9b\xe2\x80\xae\xff\xf0\x9f\x92\xa9\xcc\x81\xd2\x83 \xc3\xa4";
     digsight_health_t h         = health_at(1000000000, hostile);
@@ -190,9 +186,8 @@ static void no_text_of_a_message_moves_the_cursor(void **state)
     assert_contains(screen(40, 120, false, &view), "? \xc3\xa4"); // a letter stays
 }
 
-static void any_size_is_drawn(void **state)
+TEST_WITH(any_size_is_drawn, fresh, NULL)
 {
-    (void)state;
     dig();
     for (int rows = 0; rows <= DIGWATCH_ROWS_MAX + 10; rows += rows < 30 ? 1 : 16) {
         for (int columns = 0; columns <= DIGWATCH_COLUMNS_MAX + 10;
@@ -206,9 +201,8 @@ static void any_size_is_drawn(void **state)
     assert_contains(screen(100, 320, true, &plain), "Health");
 }
 
-static void any_moment_has_a_scale(void **state)
+TEST_WITH(any_moment_has_a_scale, fresh, NULL)
 {
-    (void)state;
     static const double moments[] = { 0.0, 1e-9, -3.0, 999.0, 1e3, -1e9, 1e9, 1e12, (double)NAN };
     for (size_t i = 0; i < sizeof moments / sizeof moments[0]; i++) {
         digwatch_model_init(&model);
@@ -219,9 +213,8 @@ static void any_moment_has_a_scale(void **state)
     }
 }
 
-static void prometheus_gets_all_counters_whole_or_not_at_all(void **state)
+TEST_WITH(prometheus_gets_all_counters_whole_or_not_at_all, fresh, NULL)
 {
-    (void)state;
     const char *const path = scratch_path("d.prom");
     size_t            size = 0;
     assert_int_equal(digwatch_prometheus(&model, 0.0, path, NULL), DIG_OK);
@@ -253,16 +246,4 @@ static void prometheus_gets_all_counters_whole_or_not_at_all(void **state)
     assert_contains(error.text, "no/where.prom: No such file");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(everything_stands_in_80_by_24, fresh),
-        cmocka_unit_test_setup(the_chart_has_the_measured_the_predicted_and_the_band, fresh),
-        cmocka_unit_test_setup(health_says_what_is_wrong_and_what_to_do, fresh),
-        cmocka_unit_test_setup(no_text_of_a_message_moves_the_cursor, fresh),
-        cmocka_unit_test_setup(any_size_is_drawn, fresh),
-        cmocka_unit_test_setup(any_moment_has_a_scale, fresh),
-        cmocka_unit_test_setup(prometheus_gets_all_counters_whole_or_not_at_all, fresh),
-    };
-    return cmocka_run_group_tests_name("digwatch screen", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

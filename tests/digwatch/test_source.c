@@ -21,9 +21,8 @@ static void count(void *const context, const struct dig_lcm_event *const event)
 }
 
 // At twice its speed: a second takes half of one, an hour five seconds, a clock set back nothing.
-static void a_log_is_played_at_its_speed_without_its_pauses(void **state)
+TEST(a_log_is_played_at_its_speed_without_its_pauses)
 {
-    (void)state;
     static const int64_t  times_us[] = { 5000000, 6000000, 3606000000, 1000, INT64_MIN, INT64_MAX };
     lcm_eventlog_t *const log        = lcm_eventlog_create(scratch_path("day.lcm"), "w");
     for (size_t i = 0; i < 6; i++) {
@@ -57,9 +56,8 @@ static void a_log_is_played_at_its_speed_without_its_pauses(void **state)
     digwatch_source_close(NULL);
 }
 
-static void a_source_that_is_none_is_refused_and_writes_nothing(void **state)
+TEST(a_source_that_is_none_is_refused_and_writes_nothing)
 {
-    (void)state;
     struct digwatch_source *source = NULL;
     struct dig_error        error  = { "" };
     assert_int_equal(digwatch_source_play(scratch_path("none.lcm"), 1.0, &source, &error), DIG_EIO);
@@ -69,11 +67,4 @@ static void a_source_that_is_none_is_refused_and_writes_nothing(void **state)
     assert_null(source);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_log_is_played_at_its_speed_without_its_pauses),
-        cmocka_unit_test(a_source_that_is_none_is_refused_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("digwatch source", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

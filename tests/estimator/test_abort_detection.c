@@ -69,9 +69,8 @@ static bool left(const struct dug *const dug)
 }
 
 // At 40, 60 and 75 of 90 mm along: 15 mm from the last leg are still beside it.
-static void a_load_lifted_short_of_the_last_leg_has_left(void **state)
+TEST(a_load_lifted_short_of_the_last_leg_has_left)
 {
-    (void)state;
     static const double along_m[] = { 0.04, 0.06, 0.075 };
     for (size_t i = 0; i < sizeof along_m / sizeof along_m[0]; i++) {
         struct dug                 dug = dig(along_m[i]);
@@ -85,9 +84,8 @@ static void a_load_lifted_short_of_the_last_leg_has_left(void **state)
     }
 }
 
-static void what_is_dug_to_its_end_or_not_on_has_not(void **state)
+TEST(what_is_dug_to_its_end_or_not_on_has_not)
 {
-    (void)state;
     struct dug whole = dig(0.09);
     go(&whole, 0.0, 0.04);
     assert_false(left(&whole));
@@ -99,9 +97,8 @@ static void what_is_dug_to_its_end_or_not_on_has_not(void **state)
 }
 
 // Lifted over a stone by 12 mm, and down again.
-static void who_swerves_and_comes_back_has_not(void **state)
+TEST(who_swerves_and_comes_back_has_not)
 {
-    (void)state;
     struct dug dug = dig(0.04);
     go(&dug, 0.01, 0.012);
     go(&dug, 0.01, -0.012);
@@ -111,18 +108,16 @@ static void who_swerves_and_comes_back_has_not(void **state)
 }
 
 // 20 mm farther than the table's.
-static void who_goes_on_beyond_a_corner_has_not(void **state)
+TEST(who_goes_on_beyond_a_corner_has_not)
 {
-    (void)state;
     struct dug dug = dig(0.11);
     go(&dug, 0.0, 0.04);
     assert_false(left(&dug));
 }
 
 // Of a long first leg: how much of it was dug only contact tells.
-static void on_the_first_leg_no_one_knows(void **state)
+TEST(on_the_first_leg_no_one_knows)
 {
-    (void)state;
     const struct dig_route route = {
         .corners = 3,
         .corner  = { { 0.0, 0.0, 0.0 }, { 0.0, -0.06, 0.0 }, { 0.06, -0.06, 0.0 } },
@@ -153,9 +148,8 @@ static void sway(struct dug *const dug, const double along_m, const double side_
 }
 
 // An unsteady hand is off its path by as much at any time; one that is far off it is on none.
-static void what_fits_hardly_better_before_has_not(void **state)
+TEST(what_fits_hardly_better_before_has_not)
 {
-    (void)state;
     static const struct {
         double side_m, back_m, up_m;
         bool   left;
@@ -174,9 +168,8 @@ static void what_fits_hardly_better_before_has_not(void **state)
 }
 
 // Both routes go down and along; only one goes down in the end.
-static void what_can_be_two_is_left_open(void **state)
+TEST(what_can_be_two_is_left_open)
 {
-    (void)state;
     struct dig_abort_detection departure = { .progress = -1.0 };
     struct dug                 early     = dig(0.06);
     go(&early, 0.0, 0.05);
@@ -188,18 +181,4 @@ static void what_can_be_two_is_left_open(void **state)
     go(&late, -0.03, 0.0);
     assert_int_equal(left_of(&late, 2, &departure), 1);
     assert_close(departure.progress, 0.14 / 0.16, 0.015);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_load_lifted_short_of_the_last_leg_has_left),
-        cmocka_unit_test(what_is_dug_to_its_end_or_not_on_has_not),
-        cmocka_unit_test(who_swerves_and_comes_back_has_not),
-        cmocka_unit_test(who_goes_on_beyond_a_corner_has_not),
-        cmocka_unit_test(on_the_first_leg_no_one_knows),
-        cmocka_unit_test(what_fits_hardly_better_before_has_not),
-        cmocka_unit_test(what_can_be_two_is_left_open),
-    };
-    return cmocka_run_group_tests_name("departure", tests, NULL, NULL);
 }

@@ -33,9 +33,8 @@ static void drive(const struct dig_trajectory *const t, struct dig_path_point wa
     }
 }
 
-static void depth_and_attack_are_found_wherever_the_ground_lies(void **state)
+TEST(depth_and_attack_are_found_wherever_the_ground_lies)
 {
-    (void)state;
     static const double at[][2] = { { 1.0, 0.0 }, { 1.15, 0.0 }, { 0.8, 4.0 }, { 1.3, -7.0 } };
     for (size_t t = 0; t < 2; t++) {
         const struct dig_trajectory plain = approach_dug(t, dig_approach_plain());
@@ -53,9 +52,8 @@ static void depth_and_attack_are_found_wherever_the_ground_lies(void **state)
     }
 }
 
-static void a_shaking_way_moves_it_little(void **state)
+TEST(a_shaking_way_moves_it_little)
 {
-    (void)state;
     const struct dig_trajectory plain = approach_dug(0, dig_approach_plain());
     const struct dig_trajectory dug   = approach_dug(0, (struct dig_approach){ 1.1, 0.05 });
     struct dig_path_point       way[POINTS];
@@ -72,9 +70,8 @@ static void a_shaking_way_moves_it_little(void **state)
     assert_close(off_m, 5e-4 * sqrt(1.5), 1e-4);
 }
 
-static void another_trajectory_stays_far_away(void **state)
+TEST(another_trajectory_stays_far_away)
 {
-    (void)state;
     const struct dig_trajectory actual = approach_dug(1, dig_approach_plain());
     struct dig_path_point       way[POINTS];
     struct dig_approach         found;
@@ -83,9 +80,8 @@ static void another_trajectory_stays_far_away(void **state)
     assert_true(dig_approach_fit(&simple, 0.09, APPROACH_m, way, &found) > 0.02);
 }
 
-static void a_trajectory_that_does_not_go_down_has_no_depth(void **state)
+TEST(a_trajectory_that_does_not_go_down_has_no_depth)
 {
-    (void)state;
     struct dig_trajectory plain = approach_dug(0, dig_approach_plain());
     struct dig_path_point way[POINTS];
     struct dig_approach   found;
@@ -97,15 +93,4 @@ static void a_trajectory_that_does_not_go_down_has_no_depth(void **state)
     (void)dig_approach_fit(&plain, 0.09, APPROACH_m, way, &found);
     assert_close(found.depth, 1.0, 0.0);
     assert_close(found.attack_rad, 0.0, 1e-4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_and_attack_are_found_wherever_the_ground_lies),
-        cmocka_unit_test(a_shaking_way_moves_it_little),
-        cmocka_unit_test(another_trajectory_stays_far_away),
-        cmocka_unit_test(a_trajectory_that_does_not_go_down_has_no_depth),
-    };
-    return cmocka_run_group_tests_name("approach_fit", tests, NULL, NULL);
 }

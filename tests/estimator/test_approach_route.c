@@ -36,9 +36,8 @@ static void drive(const size_t t, const struct dig_approach made, const double n
     }
 }
 
-static void a_turned_bucket_is_on_its_path_where_the_table_was_dug_so(void **state)
+TEST(a_turned_bucket_is_on_its_path_where_the_table_was_dug_so)
 {
-    (void)state;
     static const double attack[] = { 0.0, 2.5 * DEG, -4.0 * DEG, 5.5 * DEG };
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     for (size_t t = 0; t < 2; t++) {
@@ -65,9 +64,8 @@ static void a_turned_bucket_is_on_its_path_where_the_table_was_dug_so(void **sta
     }
 }
 
-static void a_track_holds_for_the_route_at_another_depth(void **state)
+TEST(a_track_holds_for_the_route_at_another_depth)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_route plain = dig_approach_route(&table.cube.set, 1);
     const struct dig_route deep  = dig_approach_route_deep(&table.cube.set, 1, 1.2);
@@ -105,9 +103,8 @@ static void over_deepest(const size_t g, const size_t t, const struct dig_approa
     }
 }
 
-static void depth_is_told_by_where_the_soil_begins_to_resist(void **state)
+TEST(depth_is_told_by_where_the_soil_begins_to_resist)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_curve_set *const set = &table.cube.set;
     double                            moment_Nm[DIG_CURVE_POINTS];
@@ -128,14 +125,4 @@ static void depth_is_told_by_where_the_soil_begins_to_resist(void **state)
     approach_table_init(&table, CUBE_GRAVELS, 2, &cross[1], approach_growing, 0.05, 3);
     over_deepest(0, 0, (struct dig_approach){ 1.15, 0.0 }, moment_Nm);
     assert_close(dig_approach_depth(set, 0, 1.0, 0.0, 0.0, 1.0, moment_Nm), 1.0, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_turned_bucket_is_on_its_path_where_the_table_was_dug_so),
-        cmocka_unit_test(a_track_holds_for_the_route_at_another_depth),
-        cmocka_unit_test(depth_is_told_by_where_the_soil_begins_to_resist),
-    };
-    return cmocka_run_group_tests_name("approach_route", tests, NULL, NULL);
 }

@@ -72,9 +72,8 @@ static double worst(const struct dig_curve_set *const made, const size_t g, cons
     return most / approach_strength(g);
 }
 
-static void what_is_linear_is_met_everywhere_in_a_cross(void **state)
+TEST(what_is_linear_is_met_everywhere_in_a_cross)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, straight, 0.05, 3);
     static const double          at[][2]          = { { 1.07, 0.0 }, { 0.9, 0.0 },   { 1.0, 3.0 },
                                                       { 1.05, 2.0 }, { 0.93, -1.0 }, { 1.15, 0.0 } };
@@ -97,9 +96,8 @@ static void what_is_linear_is_met_everywhere_in_a_cross(void **state)
     }
 }
 
-static void a_slot_that_is_plain_is_the_table_bit_by_bit(void **state)
+TEST(a_slot_that_is_plain_is_the_table_bit_by_bit)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_curve_set *const made = make(1, 0.0, 0.0);
     for (size_t g = 0; g < CUBE_GRAVELS; g++) {
@@ -111,9 +109,8 @@ static void a_slot_that_is_plain_is_the_table_bit_by_bit(void **state)
                         sizeof made->trajectory[0]);
 }
 
-static void a_product_meets_what_the_axes_do_together(void **state)
+TEST(a_product_meets_what_the_axes_do_together)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 8, product, twisted, 0.05, 3);
     const double factor = twisted(1.1, 4.0 * DEG);
     assert_true(worst(make(0, 1.1, 4.0), 5, 0, factor) < READ_OFF);
@@ -143,9 +140,8 @@ static double widened(const struct dig_curve_set *const made, const size_t g, co
     return sqrt(fmax(more, 0.0)) / rms(plain->mean[0]);
 }
 
-static void the_spread_grows_by_what_leaving_out_says(void **state)
+TEST(the_spread_grows_by_what_leaving_out_says)
 {
-    (void)state;
     // depth^2 bends by 1 per factor^2: halfway from 1 to 1.15 a straight line is off by .075^2.
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 1e-4, 3);
     const struct dig_curve_set *made = make(0, 1.075, 0.0);
@@ -167,9 +163,8 @@ static void the_spread_grows_by_what_leaving_out_says(void **state)
     assert_close(widened(make(0, 1.075, 0.0), 3, 0), 0.3 / 4.0, 2e-3);
 }
 
-static void gravels_that_were_dug_plainly_alone_borrow_the_change(void **state)
+TEST(gravels_that_were_dug_plainly_alone_borrow_the_change)
 {
-    (void)state;
     // Gravels 0 to 5; 6 and 7 borrow. The shape differs a little from gravel to gravel.
     approach_table_init(&table, 6, 4, cross, straight, 1e-4, 3);
     const struct dig_curve_set *made = make(0, 1.1, 0.0);
@@ -204,9 +199,8 @@ static double clamp(const double depth, const double attack_deg, struct dig_appr
     return dig_approach_clamp(&table.cube.set, 0, &approach, nearest);
 }
 
-static void outside_the_hull_the_nearest_place_in_it_counts(void **state)
+TEST(outside_the_hull_the_nearest_place_in_it_counts)
 {
-    (void)state;
     struct dig_approach nearest;
     approach_table_init(&table, CUBE_GRAVELS, 8, product, straight, 0.05, 3);
     assert_close(clamp(1.1, 4.9, &nearest), 0.0, 0.0);
@@ -237,9 +231,8 @@ static void outside_the_hull_the_nearest_place_in_it_counts(void **state)
     assert_true(dig_approach_is_plain(&nearest));
 }
 
-static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void **state)
+TEST(a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
     const struct dig_approach   approach = { 1.1, 1.0 * DEG };
     const struct dig_trajectory dug      = approach_dug(0, approach);
@@ -273,9 +266,8 @@ static void a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth(void
     assert_true(sqrt(off) < 0.1 * sqrt(nominal_off));
 }
 
-static void a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do(void **state)
+TEST(a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do)
 {
-    (void)state;
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, straight, 1e-4, 3);
     const struct dig_approach         approach = { 1.15, 0.0 };
     const struct dig_curve_set *const set      = &table.cube.set;
@@ -304,17 +296,4 @@ static void a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do(void **
     assert_true((double)expected.curve.mean[0][0] > 0.05);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_linear_is_met_everywhere_in_a_cross),
-        cmocka_unit_test(a_slot_that_is_plain_is_the_table_bit_by_bit),
-        cmocka_unit_test(a_product_meets_what_the_axes_do_together),
-        cmocka_unit_test(the_spread_grows_by_what_leaving_out_says),
-        cmocka_unit_test(gravels_that_were_dug_plainly_alone_borrow_the_change),
-        cmocka_unit_test(outside_the_hull_the_nearest_place_in_it_counts),
-        cmocka_unit_test(a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do),
-        cmocka_unit_test(a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth),
-    };
-    return cmocka_run_group_tests_name("approached", tests, NULL, tear_down);
-}
+TESTS_WITH(NULL, tear_down)

@@ -42,9 +42,8 @@ static struct dig_sample sample_of(const struct dig_machine *const truth,
     return sample;
 }
 
-static void nothing_corrected_at_rest_is_the_plain_wrench(void **state)
+TEST(nothing_corrected_at_rest_is_the_plain_wrench)
 {
-    (void)state;
     const struct dig_machine    machine = model_machine();
     const struct dig_correction none    = { .delay_s = 0.0 };
     const double                zero[3] = { 0.0 };
@@ -61,9 +60,8 @@ static void nothing_corrected_at_rest_is_the_plain_wrench(void **state)
     expect_load(&machine, &none, &sample, &still, 0.1);
 }
 
-static void offsets_and_gains_are_taken_off(void **state)
+TEST(offsets_and_gains_are_taken_off)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     const double             zero[3] = { 0.0 };
     struct dig_sample        sample  = sample_of(&machine, zero);
@@ -79,9 +77,8 @@ static void offsets_and_gains_are_taken_off(void **state)
     expect_load(&machine, &c, &sample, &still, 0.1);
 }
 
-static void another_bucket_payload_and_linkage_are_taken_off(void **state)
+TEST(another_bucket_payload_and_linkage_are_taken_off)
 {
-    (void)state;
     const struct dig_machine    file = model_machine();
     const struct dig_correction c    = {
            .bucket       = { 40.0, { 12.0, -5.0 }, 3.0 },
@@ -122,9 +119,8 @@ static void another_bucket_payload_and_linkage_are_taken_off(void **state)
 
 // A base pin that is not where the file has it makes every length another one. Where the drive
 // meets its stops is known by the lengths as the file draws them, before and after.
-static void moved_pins_leave_the_stops_where_they_are(void **state)
+TEST(moved_pins_leave_the_stops_where_they_are)
 {
-    (void)state;
     struct dig_machine          machine = model_machine();
     const double                zero[3] = { 0.0 };
     const struct dig_correction moved   = { .base_m[DIG_JOINT_ARM] = { 0.0, 0.06 } };
@@ -146,9 +142,8 @@ static void moved_pins_leave_the_stops_where_they_are(void **state)
     }
 }
 
-static void friction_is_taken_off_in_both_directions(void **state)
+TEST(friction_is_taken_off_in_both_directions)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     for (int way = -1; way <= 1; way += 2) {
         struct dig_rates      rates = still;
@@ -172,9 +167,8 @@ static void friction_is_taken_off_in_both_directions(void **state)
     }
 }
 
-static void noise_of_the_rates_widens_sigma(void **state)
+TEST(noise_of_the_rates_widens_sigma)
 {
-    (void)state;
     const struct dig_machine    machine = model_machine();
     const struct dig_correction none    = { .delay_s = 0.0 };
     const double                zero[3] = { 0.0 };
@@ -205,9 +199,8 @@ static void noise_of_the_rates_widens_sigma(void **state)
 
 // Over all poses, of angles that are read badly: what lies a sigma away from a toggle or from a
 // stretched arm is not told, with sigmas or without.
-static void without_sigmas_the_same_is_told(void **state)
+TEST(without_sigmas_the_same_is_told)
 {
-    (void)state;
     enum { STEPS = 64 };
     struct dig_machine          rough = model_machine();
     const struct dig_correction c     = { .friction = { { .coulomb_N = 900.0 } } };
@@ -250,9 +243,8 @@ static void without_sigmas_the_same_is_told(void **state)
     assert_int_equal(spoilt, 7);
 }
 
-static void what_cannot_be_is_refused(void **state)
+TEST(what_cannot_be_is_refused)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     struct dig_correction    c       = { .delay_s = (double)NAN };
     assert_int_equal(dig_correction_check(&machine, &c), DIG_EINVAL);
@@ -265,19 +257,4 @@ static void what_cannot_be_is_refused(void **state)
     c = (struct dig_correction){ .offset_Pa = { { 1.0 } } };
     assert_false(dig_correction_is_none(&c));
     assert_int_equal(dig_correction_check(&machine, &c), DIG_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_corrected_at_rest_is_the_plain_wrench),
-        cmocka_unit_test(offsets_and_gains_are_taken_off),
-        cmocka_unit_test(another_bucket_payload_and_linkage_are_taken_off),
-        cmocka_unit_test(moved_pins_leave_the_stops_where_they_are),
-        cmocka_unit_test(friction_is_taken_off_in_both_directions),
-        cmocka_unit_test(noise_of_the_rates_widens_sigma),
-        cmocka_unit_test(without_sigmas_the_same_is_told),
-        cmocka_unit_test(what_cannot_be_is_refused),
-    };
-    return cmocka_run_group_tests_name("correction", tests, NULL, NULL);
 }

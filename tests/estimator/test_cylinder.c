@@ -16,9 +16,8 @@ static const struct dig_cylinder pair = {
 };
 
 // Worked by hand: 0.12 m bore is 1.130973355e-2 m2, less 0.08 m rod 6.283185307e-3 m2.
-static void pressures_push_on_their_areas_times_the_count(void **state)
+TEST(pressures_push_on_their_areas_times_the_count)
 {
-    (void)state;
     struct dig_push push;
     assert_int_equal(dig_cylinder_push(&pair, 10e6, 0.0, 2e5, &push), DIG_OK);
     assert_close(push.push_N, 226194.671, 1e-3);
@@ -28,9 +27,8 @@ static void pressures_push_on_their_areas_times_the_count(void **state)
 }
 
 // Monte Carlo: readings of chambers anywhere between the steps, with noise, scatter as sigma says.
-static void sigma_is_the_scatter_of_quantised_noisy_readings(void **state)
+TEST(sigma_is_the_scatter_of_quantised_noisy_readings)
 {
-    (void)state;
     enum { TRIALS = 40000 };
     uint64_t seed = 1;
     double   sum2 = 0.0, sigma_N = 0.0;
@@ -49,9 +47,8 @@ static void sigma_is_the_scatter_of_quantised_noisy_readings(void **state)
 }
 
 // A steady signal read often: the mean of the readings keeps the error that slow says.
-static void slow_is_what_averaging_leaves_of_the_quantisation(void **state)
+TEST(slow_is_what_averaging_leaves_of_the_quantisation)
 {
-    (void)state;
     const double dithers[] = { 0.25, 0.35 };
     uint64_t     seed      = 7;
     for (size_t d = 0; d < sizeof dithers / sizeof dithers[0]; d++) {
@@ -71,9 +68,8 @@ static void slow_is_what_averaging_leaves_of_the_quantisation(void **state)
     assert_close(dig_reading_slow(0.0, 0.3), 0.0, 0.0);
 }
 
-static void a_chamber_at_relief_or_below_vacuum_is_invalid(void **state)
+TEST(a_chamber_at_relief_or_below_vacuum_is_invalid)
 {
-    (void)state;
     const double bad_Pa[]  = { 3.38e7, 3.5e7, -4e5 };
     const double good_Pa[] = { 3.36e7, 0.0, -5e4 };
     for (size_t i = 0; i < 3; i++) {
@@ -87,9 +83,8 @@ static void a_chamber_at_relief_or_below_vacuum_is_invalid(void **state)
     }
 }
 
-static void a_pressure_that_is_no_number_is_refused_and_writes_nothing(void **state)
+TEST(a_pressure_that_is_no_number_is_refused_and_writes_nothing)
 {
-    (void)state;
     const double bad_Pa[] = { NAN, INFINITY, -INFINITY };
     for (size_t i = 0; i < 3; i++) {
         struct dig_push push = { .push_N = 42.0 };
@@ -99,24 +94,10 @@ static void a_pressure_that_is_no_number_is_refused_and_writes_nothing(void **st
     }
 }
 
-static void stops_are_kept_clear_of(void **state)
+TEST(stops_are_kept_clear_of)
 {
-    (void)state;
     assert_true(dig_cylinder_is_clear(&pair, 2.5));
     assert_false(dig_cylinder_is_clear(&pair, 2.004));
     assert_false(dig_cylinder_is_clear(&pair, 2.996));
     assert_false(dig_cylinder_is_clear(&pair, NAN));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pressures_push_on_their_areas_times_the_count),
-        cmocka_unit_test(sigma_is_the_scatter_of_quantised_noisy_readings),
-        cmocka_unit_test(slow_is_what_averaging_leaves_of_the_quantisation),
-        cmocka_unit_test(a_chamber_at_relief_or_below_vacuum_is_invalid),
-        cmocka_unit_test(a_pressure_that_is_no_number_is_refused_and_writes_nothing),
-        cmocka_unit_test(stops_are_kept_clear_of),
-    };
-    return cmocka_run_group_tests_name("cylinder", tests, NULL, NULL);
 }

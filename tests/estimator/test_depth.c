@@ -69,9 +69,8 @@ static enum dig_status fit(const double limit_m, struct dig_observation *const d
     return status;
 }
 
-static void a_dig_laid_over_another_path_stays_where_it_was(void **state)
+TEST_WITH(a_dig_laid_over_another_path_stays_where_it_was, set_up, NULL)
 {
-    (void)state;
     static const double to[] = { 0.8, 1.0, 1.15 };
     for (size_t i = 0; i < sizeof to / sizeof to[0]; i++) {
         struct dig_observation       dig  = observe(5, 1.0, over, NULL);
@@ -88,9 +87,8 @@ static void a_dig_laid_over_another_path_stays_where_it_was(void **state)
 }
 
 // Over a longer path it begins later; over a shorter one, what was not measured stays so.
-static void what_was_not_measured_is_not_made_up(void **state)
+TEST_WITH(what_was_not_measured_is_not_made_up, set_up, NULL)
 {
-    (void)state;
     const double           whole_m[] = { 0.0301800 + 0.1292, 1.2 * 0.0301800 + 0.1292 };
     struct dig_observation dig       = observe(2, 1.0, 1.0, NULL);
     dig_laid_observation(&table.cube.set, 1.2, &dig);
@@ -107,9 +105,8 @@ static void what_was_not_measured_is_not_made_up(void **state)
 }
 
 // In the air nothing resists: a table's curve is 0 before its own start.
-static void a_curve_over_a_deeper_path_begins_later(void **state)
+TEST_WITH(a_curve_over_a_deeper_path_begins_later, set_up, NULL)
 {
-    (void)state;
     static struct dig_curve curve;
     double                  place[DIG_CURVE_POINTS];
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -146,9 +143,8 @@ static double likeliest(const struct dig_observation *const dig)
 }
 
 // Nine looks, .05 apart here, find what many do, to half a step.
-static void the_likeliest_depth_is_found_by_few_looks(void **state)
+TEST_WITH(the_likeliest_depth_is_found_by_few_looks, set_up, NULL)
 {
-    (void)state;
     static const double depth[] = { 0.875, 0.93, 1.07, 1.12 };
     for (size_t i = 0; i < sizeof depth / sizeof depth[0]; i += test_is_quick() ? 3 : 1) {
         struct dig_observation dig  = observe(5, depth[i], over, NULL);
@@ -160,9 +156,8 @@ static void the_likeliest_depth_is_found_by_few_looks(void **state)
 }
 
 // Digs that scatter as the table says; where the soil begins to resist tells less.
-static void depth_is_told_by_all_of_a_dig(void **state)
+TEST_WITH(depth_is_told_by_all_of_a_dig, set_up, NULL)
 {
-    (void)state;
     static const double      depth[] = { 0.85, 1.0, 1.15 };
     const size_t             digs    = test_is_quick() ? 8 : 24;
     struct dig_entry_scatter shape;
@@ -193,9 +188,8 @@ static void depth_is_told_by_all_of_a_dig(void **state)
 }
 
 // The rough depth of a dig counts only beyond the end at which all of the curve puts it.
-static void what_seems_to_lie_beyond_the_table_is_distance(void **state)
+TEST_WITH(what_seems_to_lie_beyond_the_table_is_distance, set_up, NULL)
 {
-    (void)state;
     struct dig_observation dig = observe(3, 1.0, over, NULL);
     dig.made.depth             = 0.3; // the first grain lay low
     assert_int_equal(fit(0.008, &dig), DIG_OK);
@@ -214,9 +208,8 @@ static void what_seems_to_lie_beyond_the_table_is_distance(void **state)
     assert_close(dig.approach.depth, over, 0.0); // as it was
 }
 
-static void a_table_of_one_depth_tells_none(void **state)
+TEST_WITH(a_table_of_one_depth_tells_none, set_up, NULL)
 {
-    (void)state;
     table.cube.set.approaches  = NULL;
     struct dig_observation dig = observe(3, 1.0, 1.0, NULL);
     dig.made                   = (struct dig_approach){ .depth = 0.0 };
@@ -224,18 +217,4 @@ static void a_table_of_one_depth_tells_none(void **state)
     assert_close(dig.made.depth, 0.0, 0.0);
     dig.moment_Nm[9] = (double)NAN;
     assert_int_equal(fit(0.008, &dig), DIG_EINVAL);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_dig_laid_over_another_path_stays_where_it_was, set_up),
-        cmocka_unit_test_setup(what_was_not_measured_is_not_made_up, set_up),
-        cmocka_unit_test_setup(a_curve_over_a_deeper_path_begins_later, set_up),
-        cmocka_unit_test_setup(the_likeliest_depth_is_found_by_few_looks, set_up),
-        cmocka_unit_test_setup(depth_is_told_by_all_of_a_dig, set_up),
-        cmocka_unit_test_setup(what_seems_to_lie_beyond_the_table_is_distance, set_up),
-        cmocka_unit_test_setup(a_table_of_one_depth_tells_none, set_up),
-    };
-    return cmocka_run_group_tests_name("depth", tests, NULL, NULL);
 }

@@ -77,9 +77,8 @@ static double needed_Nm(const struct dig_machine *const m, const struct state *c
            (lagrangian_J(m, &more, pitch_rad) - lagrangian_J(m, &less, pitch_rad)) / (2 * h);
 }
 
-static void moments_are_those_of_lagrange(void **state)
+TEST(moments_are_those_of_lagrange)
 {
-    (void)state;
     const struct dig_machine m    = model_machine();
     uint64_t                 seed = 4;
     for (int i = 0; i < 200; i++) {
@@ -103,9 +102,8 @@ static void moments_are_those_of_lagrange(void **state)
     }
 }
 
-static void standing_still_it_is_the_weight(void **state)
+TEST(standing_still_it_is_the_weight)
 {
-    (void)state;
     const struct dig_machine m             = model_machine();
     const double             q[DIG_JOINTS] = { 0.4, -1.4, -0.6 };
     const struct dig_front   front         = dig_front_place(&m, q);
@@ -118,9 +116,8 @@ static void standing_still_it_is_the_weight(void **state)
     }
 }
 
-static void the_inertia_is_symmetric_and_adds_up(void **state)
+TEST(the_inertia_is_symmetric_and_adds_up)
 {
-    (void)state;
     const struct dig_machine m             = model_machine();
     const double             q[DIG_JOINTS] = { 0.2, -1.1, -0.9 };
     const struct dig_front   front         = dig_front_place(&m, q);
@@ -138,14 +135,4 @@ static void the_inertia_is_symmetric_and_adds_up(void **state)
             assert_close(by[j][k], by[k][j], 1e-9 * by[0][0]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moments_are_those_of_lagrange),
-        cmocka_unit_test(standing_still_it_is_the_weight),
-        cmocka_unit_test(the_inertia_is_symmetric_and_adds_up),
-    };
-    return cmocka_run_group_tests_name("dynamics", tests, NULL, NULL);
 }

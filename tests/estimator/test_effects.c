@@ -94,9 +94,8 @@ static double share_at(const struct world *const w, const enum dig_effect_id eff
     return t.delta[DIG_CHANNEL_MY_Nm][128] / rms_My(g);
 }
 
-static void templates_go_through_their_beds_and_straight_between(void **state)
+TEST(templates_go_through_their_beds_and_straight_between)
 {
-    (void)state;
     struct world *const w = make_world();
     assert_close(share_at(w, DIG_EFFECT_COHESION, 1e4, &base[0]), 0.2, 1e-5);
     assert_close(share_at(w, DIG_EFFECT_COHESION, 1.5e4, &base[0]), 0.25, 1e-5);
@@ -116,9 +115,8 @@ static void templates_go_through_their_beds_and_straight_between(void **state)
     free_world(w);
 }
 
-static void where_there_is_no_bed_there_is_no_template(void **state)
+TEST(where_there_is_no_bed_there_is_no_template)
 {
-    (void)state;
     struct world *const w   = make_world();
     double              low = 7.0, high = 7.0;
     assert_true(dig_template_range(&w->effects, DIG_EFFECT_COHESION, MADE_SIMPLE_A, &low, &high));
@@ -139,9 +137,8 @@ static void where_there_is_no_bed_there_is_no_template(void **state)
     free_world(w);
 }
 
-static void a_templates_sigma_is_that_of_two_means(void **state)
+TEST(a_templates_sigma_is_that_of_two_means)
 {
-    (void)state;
     struct world *const w = make_world();
     struct dig_template t;
     assert_int_equal(dig_template_find(w->plain, &w->effects, DIG_EFFECT_COHESION, 1e4, &base[1],
@@ -153,9 +150,8 @@ static void a_templates_sigma_is_that_of_two_means(void **state)
     free_world(w);
 }
 
-static void every_effect_is_listed_and_absent_changes_nothing(void **state)
+TEST(every_effect_is_listed_and_absent_changes_nothing)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     struct dig_curve *const  curve   = calloc(1, sizeof *curve);
     curve->mean[0][7]                = 3.0F;
@@ -197,9 +193,8 @@ static void every_effect_is_listed_and_absent_changes_nothing(void **state)
 }
 
 // Two digs after three are the fifth.
-static void what_counts_digs_goes_on_where_it_was_left(void **state)
+TEST(what_counts_digs_goes_on_where_it_was_left)
 {
-    (void)state;
     size_t count = 0;
     for (int e = 0; e < DIG_EFFECT_UNLISTED; e++) {
         const struct dig_effect *const effect = dig_effect_of((enum dig_effect_id)e);
@@ -220,9 +215,8 @@ static void what_counts_digs_goes_on_where_it_was_left(void **state)
     assert_true(count > 0);
 }
 
-static void values_go_by_name_and_strangers_are_refused(void **state)
+TEST(values_go_by_name_and_strangers_are_refused)
 {
-    (void)state;
     struct dig_model_effect found                           = { .effect     = DIG_EFFECT_WEAR,
                                                                 .parameters = 1,
                                                                 .parameter  = { { "digs", 12.0, 0.0, 0.0 } } };
@@ -238,9 +232,8 @@ static void values_go_by_name_and_strangers_are_refused(void **state)
     assert_int_equal(dig_effect_values(&found, value), DIG_EINVAL);
 }
 
-static void a_model_changes_the_tables_curves(void **state)
+TEST(a_model_changes_the_tables_curves)
 {
-    (void)state;
     struct world *const w     = make_world();
     struct dig_model    model = {
            .effects  = 2,
@@ -288,9 +281,8 @@ static void a_model_changes_the_tables_curves(void **state)
     free_world(w);
 }
 
-static void reduced_forms_grow_as_they_say(void **state)
+TEST(reduced_forms_grow_as_they_say)
 {
-    (void)state;
     struct world *const         w   = make_world();
     const struct dig_effect_dig dig = {
         .trajectory = MADE_ACTUAL, .pass = 3, .order = 4, .pace = 4.0
@@ -316,9 +308,8 @@ static void reduced_forms_grow_as_they_say(void **state)
 
 // A layer of another material than the table's adds a multiple of what that adds; a model that says
 // nothing of it means the table's.
-static void a_layers_contrast_multiplies_its_template(void **state)
+TEST(a_layers_contrast_multiplies_its_template)
 {
-    (void)state;
     struct world *const         w     = make_world();
     const struct dig_effect_dig dig   = { .trajectory = MADE_SIMPLE_A, .pass = 1, .pace = 1.0 };
     struct dig_model_effect     found = { .effect     = DIG_EFFECT_LAYERING,
@@ -342,9 +333,8 @@ static void a_layers_contrast_multiplies_its_template(void **state)
 }
 
 // simpleA drags its tooth at 46.3 mm/s and lifts it at 91.5 mm/s, both far from where they change.
-static void ground_may_feel_the_tooths_own_speed(void **state)
+TEST(ground_may_feel_the_tooths_own_speed)
 {
-    (void)state;
     struct world *const         w        = make_world();
     const struct dig_effect_dig dig      = { .trajectory = MADE_SIMPLE_A, .pass = 1, .pace = 2.0 };
     const double                along[2] = { 0.5, 1.0 };
@@ -361,21 +351,4 @@ static void ground_may_feel_the_tooths_own_speed(void **state)
     assert_close((1.0 + t.delta[0][250] / lift) / (1.0 + t.delta[0][120] / drag), sqrt(91.5 / 46.3),
                  2e-3);
     free_world(w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(templates_go_through_their_beds_and_straight_between),
-        cmocka_unit_test(where_there_is_no_bed_there_is_no_template),
-        cmocka_unit_test(a_templates_sigma_is_that_of_two_means),
-        cmocka_unit_test(every_effect_is_listed_and_absent_changes_nothing),
-        cmocka_unit_test(what_counts_digs_goes_on_where_it_was_left),
-        cmocka_unit_test(values_go_by_name_and_strangers_are_refused),
-        cmocka_unit_test(a_model_changes_the_tables_curves),
-        cmocka_unit_test(reduced_forms_grow_as_they_say),
-        cmocka_unit_test(a_layers_contrast_multiplies_its_template),
-        cmocka_unit_test(ground_may_feel_the_tooths_own_speed),
-    };
-    return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
 }

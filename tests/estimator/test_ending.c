@@ -26,17 +26,15 @@ static enum dig_ending ending(const double reached, const double x_m, const doub
     return dig_ending_of(&route, &track, reached, &last, limit_m);
 }
 
-static void a_dig_to_the_end_is_whole_wherever_the_bucket_goes_then(void **state)
+TEST(a_dig_to_the_end_is_whole_wherever_the_bucket_goes_then)
 {
-    (void)state;
     assert_int_equal(ending(1.0, 0.1, 0.1, 0.0), DIG_ENDING_WHOLE);
     assert_int_equal(ending(0.95, 0.3, 0.5, 0.1), DIG_ENDING_WHOLE);
     assert_int_equal(ending(0.949, 0.3, 0.5, 0.1), DIG_ENDING_ABORTED);
 }
 
-static void what_leaves_the_path_before_its_end_is_aborted(void **state)
+TEST(what_leaves_the_path_before_its_end_is_aborted)
 {
-    (void)state;
     assert_int_equal(ending(0.3, 0.06, 0.017, 0.0), DIG_ENDING_ABORTED);  // lifted out
     assert_int_equal(ending(0.3, 0.06, 0.0, 0.017), DIG_ENDING_ABORTED);  // curled where it stood
     assert_int_equal(ending(0.3, 0.06, 0.0, -0.017), DIG_ENDING_ABORTED); // opened
@@ -44,18 +42,16 @@ static void what_leaves_the_path_before_its_end_is_aborted(void **state)
 }
 
 // Back along what was dug is away from what was left to dig.
-static void what_goes_back_the_way_it_came_is_aborted(void **state)
+TEST(what_goes_back_the_way_it_came_is_aborted)
 {
-    (void)state;
     assert_int_equal(ending(0.4, 0.08 - 0.017, 0.0, 0.0), DIG_ENDING_ABORTED);
     assert_int_equal(ending(0.4, 0.08 - 0.015, 0.0, 0.0), DIG_ENDING_OPEN);
 }
 
 // Light gravel is no longer felt while the bucket still goes its way: no one knows whether the
 // trajectory was dug to its end.
-static void what_is_still_on_its_way_is_left_open(void **state)
+TEST(what_is_still_on_its_way_is_left_open)
 {
-    (void)state;
     assert_int_equal(ending(0.3, 0.06, 0.0, 0.0), DIG_ENDING_OPEN);
     assert_int_equal(ending(0.3, 0.06, 0.015, 0.0), DIG_ENDING_OPEN);
     assert_int_equal(ending(0.6, 0.1, 0.09, 0.0), DIG_ENDING_OPEN);
@@ -91,9 +87,8 @@ static bool known(const double from, const double to, const double off_m)
 }
 
 // By hand: the corner is at 0.5, and 8 mm are 0.04 of the path.
-static void only_a_piece_round_a_corner_is_known_to_be_where_it_is(void **state)
+TEST(only_a_piece_round_a_corner_is_known_to_be_where_it_is)
 {
-    (void)state;
     assert_true(known(0.0, 0.3, 0.0));
     assert_true(known(0.2, 0.4, 0.0)); // contact tells where on the first leg it is
     assert_true(known(0.44, 0.56, 0.0));
@@ -101,16 +96,4 @@ static void only_a_piece_round_a_corner_is_known_to_be_where_it_is(void **state)
     assert_false(known(0.44, 0.52, 0.0));
     assert_false(known(0.6, 0.8, 0.0));
     assert_false(known(0.0, 0.3, 0.005)); // beside it
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_dig_to_the_end_is_whole_wherever_the_bucket_goes_then),
-        cmocka_unit_test(what_leaves_the_path_before_its_end_is_aborted),
-        cmocka_unit_test(what_goes_back_the_way_it_came_is_aborted),
-        cmocka_unit_test(what_is_still_on_its_way_is_left_open),
-        cmocka_unit_test(only_a_piece_round_a_corner_is_known_to_be_where_it_is),
-    };
-    return cmocka_run_group_tests_name("ending", tests, NULL, NULL);
 }

@@ -51,9 +51,8 @@ static double shown(const struct table_runs *const t, const size_t trajectory,
     return sum / points;
 }
 
-static void packings_of_the_table_are_correlated_along_the_path_as_told(void **state)
+TEST(packings_of_the_table_are_correlated_along_the_path_as_told)
 {
-    (void)state;
     struct table_runs *const t = calloc(1, sizeof *t);
     assert_non_null(t);
     assert_int_equal(table_runs_read("tables/reference_rig.sqlite", NULL, t, NULL), DIG_OK);
@@ -80,9 +79,8 @@ static void packings_of_the_table_are_correlated_along_the_path_as_told(void **s
     free(t);
 }
 
-static void draws_have_the_variance_and_the_width_they_are_of(void **state)
+TEST(draws_have_the_variance_and_the_width_they_are_of)
 {
-    (void)state;
     enum { DRAWS = 2000 };
     static struct dig_entry_scatter spread;
     static double                   draw[DRAWS][DIG_CURVE_POINTS];
@@ -106,9 +104,8 @@ static void draws_have_the_variance_and_the_width_they_are_of(void **state)
 }
 
 // Against the sum over all pairs of points and channels.
-static void the_variance_of_a_sum_is_that_of_all_its_pairs(void **state)
+TEST(the_variance_of_a_sum_is_that_of_all_its_pairs)
 {
-    (void)state;
     static const double r[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS] = { { 1.0, -0.93, 0.63 },
                                                                       { -0.93, 1.0, -0.49 },
                                                                       { 0.63, -0.49, 1.0 } };
@@ -138,14 +135,4 @@ static void the_variance_of_a_sum_is_that_of_all_its_pairs(void **state)
         dig_entry_scatter_make(&trajectory, 0.09, &spread);
         assert_close(dig_entry_scatter_variance(&spread, &weight) / sum, 1.0, 1e-3);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(packings_of_the_table_are_correlated_along_the_path_as_told),
-        cmocka_unit_test(draws_have_the_variance_and_the_width_they_are_of),
-        cmocka_unit_test(the_variance_of_a_sum_is_that_of_all_its_pairs),
-    };
-    return cmocka_run_group_tests_name("spread", tests, NULL, NULL);
 }

@@ -13,9 +13,8 @@
 #include <string.h>
 
 // The main job: one simple dig identifies, the actual dig is predicted ahead of the bucket.
-static void a_simple_dig_predicts_the_actual_one(void **state)
+TEST(a_simple_dig_predicts_the_actual_one)
 {
-    (void)state;
     struct driven *const b = driven_create(true);
     driven_dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .seed = 5 });
     assert_int_equal(b->observations, 1);
@@ -62,9 +61,8 @@ static void a_simple_dig_predicts_the_actual_one(void **state)
     free(forecast);
 }
 
-static void a_load_carried_away_is_no_second_dig(void **state)
+TEST(a_load_carried_away_is_no_second_dig)
 {
-    (void)state;
     struct driven *const b = driven_create(true);
     driven_dig(b, (struct drive){
                       .which = MADE_ACTUAL, .stretch = 1, .until = 1, .carry_Nm = 4e3, .seed = 5 });
@@ -75,9 +73,8 @@ static void a_load_carried_away_is_no_second_dig(void **state)
     driven_destroy(b);
 }
 
-static void a_scrape_is_counted_but_not_matched(void **state)
+TEST(a_scrape_is_counted_but_not_matched)
 {
-    (void)state;
     struct driven *const  b     = driven_create(false);
     const struct dig_pose level = { 0.1, 0.18, 1.2 }; // curled in, none of the trajectories
     uint64_t              seed  = 4;
@@ -92,9 +89,8 @@ static void a_scrape_is_counted_but_not_matched(void **state)
     driven_destroy(b);
 }
 
-static void no_tick_allocates(void **state)
+TEST(no_tick_allocates)
 {
-    (void)state;
     skip_unless_allocations_count();
     struct driven *const b = driven_create(true);
     b->allocations         = &allocations;
@@ -104,9 +100,8 @@ static void no_tick_allocates(void **state)
     driven_destroy(b);
 }
 
-static void bad_samples_are_refused_and_change_nothing(void **state)
+TEST(bad_samples_are_refused_and_change_nothing)
 {
-    (void)state;
     struct driven *const    b           = driven_create(false);
     const double            joint_rad[] = { 0.2, -1.2, -0.7 };
     const struct model_load load        = { 1e3, 2e3, 1e4 };
@@ -143,9 +138,8 @@ static void bad_samples_are_refused_and_change_nothing(void **state)
 
 // Samples no machine could give, wandering and jumping: nothing that is no number comes out, and a
 // good dig afterwards is observed as if nothing had been.
-static void whatever_comes_in_only_numbers_go_out(void **state)
+TEST(whatever_comes_in_only_numbers_go_out)
 {
-    (void)state;
     struct driven *const b      = driven_create(true);
     uint64_t             seed   = 31;
     struct dig_sample    sample = { .time_ns = 1 };
@@ -185,9 +179,8 @@ static void whatever_comes_in_only_numbers_go_out(void **state)
     driven_destroy(b);
 }
 
-static void init_refuses_what_cannot_work_and_writes_nothing(void **state)
+TEST(init_refuses_what_cannot_work_and_writes_nothing)
 {
-    (void)state;
     struct driven *const                b    = driven_create(false);
     const struct dig_estimator_settings good = dig_estimator_settings_default();
     const size_t                        size = dig_estimator_size();
@@ -227,18 +220,4 @@ static void init_refuses_what_cannot_work_and_writes_nothing(void **state)
     }
     free(raw);
     driven_destroy(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_simple_dig_predicts_the_actual_one),
-        cmocka_unit_test(a_load_carried_away_is_no_second_dig),
-        cmocka_unit_test(a_scrape_is_counted_but_not_matched),
-        cmocka_unit_test(no_tick_allocates),
-        cmocka_unit_test(bad_samples_are_refused_and_change_nothing),
-        cmocka_unit_test(whatever_comes_in_only_numbers_go_out),
-        cmocka_unit_test(init_refuses_what_cannot_work_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("estimator", tests, NULL, NULL);
 }

@@ -77,9 +77,8 @@ static enum dig_status dig(struct bench *const b, const size_t t, const struct d
     return status;
 }
 
-static void depth_and_attack_are_told_where_the_table_was_dug_so(void **state)
+TEST(depth_and_attack_are_told_where_the_table_was_dug_so)
 {
-    (void)state;
     static const double at[][2] = {
         { 1.0, 0.0 }, { 0.85, 0.0 }, { 1.15, 0.0 }, { 1.05, 2.0 }, { 0.95, -3.0 }
     };
@@ -101,9 +100,8 @@ static void depth_and_attack_are_told_where_the_table_was_dug_so(void **state)
 
 // The soil is looked for from half as deep again as the table was dug: what lies beyond is seen, is
 // distance, and at more than path_limit_m the dig is none of the table's.
-static void a_dig_deeper_than_the_table_is_told_so_and_matched_at_its_edge(void **state)
+TEST(a_dig_deeper_than_the_table_is_told_so_and_matched_at_its_edge)
 {
-    (void)state;
     static const double beyond[] = { 1.3, 1.4, 1.45 };
     for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
         struct dig_observation seen;
@@ -124,9 +122,8 @@ static void a_dig_deeper_than_the_table_is_told_so_and_matched_at_its_edge(void 
     }
 }
 
-static void a_table_dug_in_one_way_tells_no_depth(void **state)
+TEST(a_table_dug_in_one_way_tells_no_depth)
 {
-    (void)state;
     struct dig_observation seen;
     struct bench *const    b     = bench_create();
     b->table.cube.set.approaches = NULL;
@@ -134,14 +131,4 @@ static void a_table_dug_in_one_way_tells_no_depth(void **state)
     assert_close(seen.made.depth, 0.0, 0.0);
     assert_true(dig_approach_is_plain(&seen.approach));
     free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_and_attack_are_told_where_the_table_was_dug_so),
-        cmocka_unit_test(a_dig_deeper_than_the_table_is_told_so_and_matched_at_its_edge),
-        cmocka_unit_test(a_table_dug_in_one_way_tells_no_depth),
-    };
-    return cmocka_run_group_tests_name("estimator_as_dug", tests, NULL, NULL);
 }

@@ -28,9 +28,8 @@ static double worst_force(const struct driven *const b)
     return worst;
 }
 
-static void every_kind_of_dig_is_observed_as_it_was(void **state)
+TEST(every_kind_of_dig_is_observed_as_it_was)
 {
-    (void)state;
     const struct {
         const char     *name;
         struct drive    drive;
@@ -116,9 +115,8 @@ static void every_kind_of_dig_is_observed_as_it_was(void **state)
 
 // What a dig looked like before it was over is what it turns out to have been, as far as it was
 // dug; never a progress that no sample after it had smoothed. Which dig it is may not be known yet.
-static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
+TEST(a_dig_going_on_is_observed_as_it_will_have_been)
 {
-    (void)state;
     const struct {
         struct drive drive;
         int          known_from;
@@ -175,9 +173,8 @@ static void a_dig_going_on_is_observed_as_it_will_have_been(void **state)
 }
 
 // Slower than the window holds: every other sample is kept, and again.
-static void a_dig_longer_than_the_window_is_still_observed(void **state)
+TEST(a_dig_longer_than_the_window_is_still_observed)
 {
-    (void)state;
     struct driven *const b = driven_create(false);
     driven_dig(b, (struct drive){ .which = MADE_SIMPLE_A, .stretch = 24, .until = 1, .seed = 5 });
     assert_int_equal(b->observations, 1);
@@ -186,9 +183,8 @@ static void a_dig_longer_than_the_window_is_still_observed(void **state)
 }
 
 // Handed out raw and observed beside the tick, every dig is what it was within.
-static void a_dig_handed_out_raw_is_observed_the_same(void **state)
+TEST(a_dig_handed_out_raw_is_observed_the_same)
 {
-    (void)state;
     const struct drive drives[] = {
         { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
         { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .sensors = true, .seed = 3 },
@@ -217,15 +213,4 @@ static void a_dig_handed_out_raw_is_observed_the_same(void **state)
     driven_destroy(inside);
     // The last raw dig taken is one of the estimator's own or the spare: both are freed.
     driven_destroy(beside);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_dig_is_observed_as_it_was),
-        cmocka_unit_test(a_dig_going_on_is_observed_as_it_will_have_been),
-        cmocka_unit_test(a_dig_longer_than_the_window_is_still_observed),
-        cmocka_unit_test(a_dig_handed_out_raw_is_observed_the_same),
-    };
-    return cmocka_run_group_tests_name("estimator_digs", tests, NULL, NULL);
 }

@@ -28,9 +28,8 @@ static struct dig_gravel random_gravel(uint64_t *const seed)
 
 // Observations read off the interpolated table itself have a gravel of distance 0, wherever it
 // lies.
-static void a_gravel_planted_between_the_grid_points_is_found(void **state)
+TEST(a_gravel_planted_between_the_grid_points_is_found)
 {
-    (void)state;
     struct dig_curve_set *const set  = made_table(&plain);
     uint64_t                    seed = 4;
     for (int trial = 0; trial < 30; trial++) {
@@ -54,9 +53,8 @@ static void a_gravel_planted_between_the_grid_points_is_found(void **state)
     made_table_destroy(set);
 }
 
-static void with_one_density_friction_and_rolling_are_found_themselves(void **state)
+TEST(with_one_density_friction_and_rolling_are_found_themselves)
 {
-    (void)state;
     const struct made_options   one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
     struct dig_curve_set *const set = made_table(&one);
     const struct dig_gravel     planted = { { 0.62, 0.33, 2500 } };
@@ -71,9 +69,8 @@ static void with_one_density_friction_and_rolling_are_found_themselves(void **st
     made_table_destroy(set);
 }
 
-static void more_evaluations_never_make_it_worse_and_few_are_enough_to_return(void **state)
+TEST(more_evaluations_never_make_it_worse_and_few_are_enough_to_return)
 {
-    (void)state;
     struct dig_curve_set *const  set           = made_table(&plain);
     const struct dig_gravel      planted       = { { 0.61, 0.5, 3000 } };
     const struct dig_observation o             = made_observation(&planted, MADE_SIMPLE_A, 0.0);
@@ -86,9 +83,8 @@ static void more_evaluations_never_make_it_worse_and_few_are_enough_to_return(vo
     made_table_destroy(set);
 }
 
-static void a_hole_is_gone_round(void **state)
+TEST(a_hole_is_gone_round)
 {
-    (void)state;
     const struct made_options    holed   = { .relative_sd = 0.1, .packings = 3, .hole = true };
     struct dig_curve_set *const  set     = made_table(&holed);
     const struct dig_gravel      planted = { { 0.52, 0.42, 2600 } }; // beside the hole
@@ -104,9 +100,8 @@ static void a_hole_is_gone_round(void **state)
 }
 
 // Two gravels of one friction + rolling resist alike: the answer must be "anything along here".
-static void what_cannot_be_told_apart_has_a_wide_interval(void **state)
+TEST(what_cannot_be_told_apart_has_a_wide_interval)
 {
-    (void)state;
     const struct made_options one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
     const struct made_options family = {
         .family = 1.0, .relative_sd = 0.1, .packings = 1000, .one_density = true
@@ -154,9 +149,8 @@ static void what_cannot_be_told_apart_has_a_wide_interval(void **state)
 }
 
 // Gravels drawn from the prior, digs disturbed as the table says: nine of ten lie in the interval.
-static void ninety_per_cent_of_gravels_lie_in_their_interval(void **state)
+TEST(ninety_per_cent_of_gravels_lie_in_their_interval)
 {
-    (void)state;
     struct dig_curve_set *const set          = made_table(&plain);
     const int                   trials       = test_is_quick() ? 40 : 200;
     uint64_t                    seed         = 99;
@@ -183,9 +177,8 @@ static void ninety_per_cent_of_gravels_lie_in_their_interval(void **state)
 }
 
 // So do they when only part of a path was dug, in an interval as wide as that leaves it.
-static void of_part_of_a_path_less_is_told_and_as_rightly(void **state)
+TEST(of_part_of_a_path_less_is_told_and_as_rightly)
 {
-    (void)state;
     const struct made_options   one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
     struct dig_curve_set *const set = made_table(&one);
     const int                   trials   = test_is_quick() ? 60 : 200;
@@ -225,9 +218,8 @@ static void of_part_of_a_path_less_is_told_and_as_rightly(void **state)
     made_table_destroy(set);
 }
 
-static void between_the_grid_points_a_dig_is_judged_again(void **state)
+TEST(between_the_grid_points_a_dig_is_judged_again)
 {
-    (void)state;
     const struct made_options    quiet   = { .relative_sd = 0.004, .packings = 1000 };
     struct dig_curve_set *const  set     = made_table(&quiet);
     const struct dig_gravel      planted = { { 0.6, 0.55, 2500 } };
@@ -241,9 +233,8 @@ static void between_the_grid_points_a_dig_is_judged_again(void **state)
 }
 
 // Entries without a grid behind them: the nearest stands, and nothing is claimed about it.
-static void scattered_entries_keep_their_nearest(void **state)
+TEST(scattered_entries_keep_their_nearest)
 {
-    (void)state;
     struct dig_curve_set *const  set = made_table(&plain);
     const struct dig_observation o   = made_observation(&set->gravel[9], MADE_SIMPLE_A, 0.0);
     for (int a = 0; a < DIG_AXES; a++) {
@@ -256,9 +247,8 @@ static void scattered_entries_keep_their_nearest(void **state)
     made_table_destroy(set);
 }
 
-static void refusals_leave_the_match_alone(void **state)
+TEST(refusals_leave_the_match_alone)
 {
-    (void)state;
     struct dig_curve_set *const set = made_table(&plain);
     struct dig_observation      o   = made_observation(&set->gravel[9], MADE_SIMPLE_A, 0.0);
     struct dig_match            match;
@@ -276,21 +266,4 @@ static void refusals_leave_the_match_alone(void **state)
     match.nearest = (int)set->entries;
     assert_int_equal(dig_fit_refine(set, NULL, 1, &o, 100, &match), DIG_EINVAL);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_gravel_planted_between_the_grid_points_is_found),
-        cmocka_unit_test(with_one_density_friction_and_rolling_are_found_themselves),
-        cmocka_unit_test(more_evaluations_never_make_it_worse_and_few_are_enough_to_return),
-        cmocka_unit_test(a_hole_is_gone_round),
-        cmocka_unit_test(what_cannot_be_told_apart_has_a_wide_interval),
-        cmocka_unit_test(ninety_per_cent_of_gravels_lie_in_their_interval),
-        cmocka_unit_test(of_part_of_a_path_less_is_told_and_as_rightly),
-        cmocka_unit_test(between_the_grid_points_a_dig_is_judged_again),
-        cmocka_unit_test(scattered_entries_keep_their_nearest),
-        cmocka_unit_test(refusals_leave_the_match_alone),
-    };
-    return cmocka_run_group_tests_name("fit_nlopt", tests, NULL, NULL);
 }

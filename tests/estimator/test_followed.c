@@ -59,9 +59,8 @@ static bool gave_up(const struct followed_dig *const dig)
     return dig_followed_was_aborted(&dig->followed, 2, routes, &dig->path, limit_m);
 }
 
-static void what_left_the_path_it_was_on_gave_up(void **state)
+TEST(what_left_the_path_it_was_on_gave_up)
 {
-    (void)state;
     const struct followed_dig dig = give_up(0.8, 0.06);
     assert_true(gave_up(&dig));
     assert_int_equal(dig.followed.trajectory, 0);
@@ -69,18 +68,16 @@ static void what_left_the_path_it_was_on_gave_up(void **state)
 }
 
 // What is told of nothing any more has left, too.
-static void what_is_told_along_none_any_more_gave_up(void **state)
+TEST(what_is_told_along_none_any_more_gave_up)
 {
-    (void)state;
     struct followed_dig dig = give_up(0.8, 0.007);
     assert_false(gave_up(&dig)); // 7 mm off is still on it
     dig_followed_off(&dig.followed);
     assert_true(gave_up(&dig));
 }
 
-static void the_place_told_is_the_last_one_near_the_path(void **state)
+TEST(the_place_told_is_the_last_one_near_the_path)
 {
-    (void)state;
     struct followed_dig dig = give_up(0.8, 0.0);
     go(&dig, 0.096, 0.064, 0.82, 0.0039);
     go(&dig, 0.095, 0.066, 0.83, 0.0041);
@@ -89,9 +86,8 @@ static void the_place_told_is_the_last_one_near_the_path(void **state)
     assert_true(dig.followed.left);
 }
 
-static void what_can_be_two_dug_to_the_end_or_hardly_begun_did_not(void **state)
+TEST(what_can_be_two_dug_to_the_end_or_hardly_begun_did_not)
 {
-    (void)state;
     const struct followed_dig two   = give_up(0.45, 0.06); // the leg that both begin with
     const struct followed_dig whole = give_up(0.96, 0.06);
     struct followed_dig       begun = give_up(0.8, 0.06);
@@ -104,17 +100,15 @@ static void what_can_be_two_dug_to_the_end_or_hardly_begun_did_not(void **state)
 }
 
 // Told to be the other one, whatever its path is.
-static void what_was_told_wrongly_did_not(void **state)
+TEST(what_was_told_wrongly_did_not)
 {
-    (void)state;
     struct followed_dig dig = give_up(0.8, 0.06);
     dig.followed.trajectory = 1;
     assert_false(gave_up(&dig));
 }
 
-static void where_it_was_while_samples_were_missing_no_one_knows(void **state)
+TEST(where_it_was_while_samples_were_missing_no_one_knows)
 {
-    (void)state;
     struct followed_dig dig = give_up(0.8, 0.06);
     dig_followed_sample(&dig.followed, true, dig.time_ns + 90000000, 0.1);
     assert_true(gave_up(&dig));
@@ -125,17 +119,4 @@ static void where_it_was_while_samples_were_missing_no_one_knows(void **state)
     struct followed_dig air = give_up(0.8, 0.06);
     dig_followed_sample(&air.followed, false, air.time_ns + 900000000, 0.1);
     assert_true(gave_up(&air));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_left_the_path_it_was_on_gave_up),
-        cmocka_unit_test(what_is_told_along_none_any_more_gave_up),
-        cmocka_unit_test(the_place_told_is_the_last_one_near_the_path),
-        cmocka_unit_test(what_can_be_two_dug_to_the_end_or_hardly_begun_did_not),
-        cmocka_unit_test(what_was_told_wrongly_did_not),
-        cmocka_unit_test(where_it_was_while_samples_were_missing_no_one_knows),
-    };
-    return cmocka_run_group_tests_name("followed", tests, NULL, NULL);
 }

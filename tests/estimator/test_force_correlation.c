@@ -71,9 +71,8 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
     return DIG_OK;
 }
 
-static void errors_of_moment_and_forces_go_together_as_packings_show(void **state)
+TEST(errors_of_moment_and_forces_go_together_as_packings_show)
 {
-    (void)state;
     static const char     table[] = "tables/reference_rig.sqlite";
     struct dig_store     *store   = NULL;
     struct dig_curve_set *set     = NULL;
@@ -95,12 +94,4 @@ static void errors_of_moment_and_forces_go_together_as_packings_show(void **stat
     dig_store_close(store);
     dig_curve_set_destroy(set);
     free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_of_moment_and_forces_go_together_as_packings_show),
-    };
-    return cmocka_run_group_tests_name("posterior", tests, NULL, NULL);
 }

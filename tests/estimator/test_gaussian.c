@@ -92,9 +92,8 @@ static struct dig_observation dig_there(const struct dig_gravel *const gravel, c
 // Where numbers are independent q is as large as there are numbers: chi-square, four standard
 // errors of its mean. Where they go together it is somewhat less, as each is given a share of its
 // own and correlations are drawn towards even ones, and never more.
-static void misses_are_as_large_as_digs_make_them(void **state)
+TEST(misses_are_as_large_as_digs_make_them)
 {
-    (void)state;
     enum { TRIALS = 300 };
     for (int way = 0; way < 4; way++) {
         const bool                  forces = way % 2 == 1, together = way / 2 == 1;
@@ -123,9 +122,8 @@ static void misses_are_as_large_as_digs_make_them(void **state)
 
 // The posterior's interval holds the gravel of nine digs in ten, or a little more: the logarithm
 // counts by less than it would.
-static void the_interval_holds_the_gravel(void **state)
+TEST(the_interval_holds_the_gravel)
 {
-    (void)state;
     const int                   trials       = test_is_quick() ? 60 : 200;
     uint64_t                    seed         = 11;
     struct dig_curve_set *const set          = taught(enough_freedom, true, &seed);
@@ -162,9 +160,8 @@ static double log_of(const struct dig_curve_set *const set, const struct dig_poo
 }
 
 // What is too little to be believed is not used: the likelihood is the one without it.
-static void a_covariance_of_too_few_packings_is_not_believed(void **state)
+TEST(a_covariance_of_too_few_packings_is_not_believed)
 {
-    (void)state;
     uint64_t                     seed = 3;
     struct dig_curve_set *const  set  = taught(23.0, true, &seed);
     const struct dig_observation dig  = dig_there(&set->gravel[7], true, true, &seed);
@@ -183,9 +180,8 @@ static void a_covariance_of_too_few_packings_is_not_believed(void **state)
 
 // An error of the curve is as so many packings fewer: with one of sqrt(S_ii / 12) a mean of four is
 // known as one of three. Of one channel whose numbers all scatter alike.
-static void an_error_of_the_curve_is_as_fewer_packings(void **state)
+TEST(an_error_of_the_curve_is_as_fewer_packings)
 {
-    (void)state;
     enum { FEWER = 3 };
     uint64_t                     seed = 21;
     struct dig_curve_set *const  set  = taught(enough_freedom, false, &seed);
@@ -208,9 +204,8 @@ static void an_error_of_the_curve_is_as_fewer_packings(void **state)
 }
 
 // Halves of blocks that were not measured whole are left out, and the rest is compared.
-static void what_was_not_measured_is_not_compared(void **state)
+TEST(what_was_not_measured_is_not_compared)
 {
-    (void)state;
     uint64_t                    seed = 8;
     struct dig_curve_set *const set  = taught(enough_freedom, true, &seed);
     static const struct {
@@ -245,16 +240,4 @@ static void what_was_not_measured_is_not_compared(void **state)
         assert_close(dig_gaussian_mahalanobis(&g, &cell).log_det, before.log_det, 0.0);
     }
     forget(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(misses_are_as_large_as_digs_make_them),
-        cmocka_unit_test(the_interval_holds_the_gravel),
-        cmocka_unit_test(a_covariance_of_too_few_packings_is_not_believed),
-        cmocka_unit_test(an_error_of_the_curve_is_as_fewer_packings),
-        cmocka_unit_test(what_was_not_measured_is_not_compared),
-    };
-    return cmocka_run_group_tests_name("gaussian", tests, NULL, NULL);
 }

@@ -67,9 +67,8 @@ static double log_by_hand(const struct dig_curve_set *const set, const size_t en
     return -0.5 * effective * sum / points;
 }
 
-static void it_is_the_formula_written_out(void **state)
+TEST(it_is_the_formula_written_out)
 {
-    (void)state;
     struct dig_curve_set *const set  = made_table(&options);
     uint64_t                    seed = 31;
     for (int trial = 0; trial < 40; trial++) {
@@ -94,12 +93,4 @@ static void it_is_the_formula_written_out(void **state)
         }
     }
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_the_formula_written_out),
-    };
-    return cmocka_run_group_tests_name("likelihood", tests, NULL, NULL);
 }

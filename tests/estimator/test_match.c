@@ -33,9 +33,8 @@ static struct dig_gravel random_gravel(uint64_t *const seed)
                                   1500 * pow(4000.0 / 1500.0, model_uniform(seed)) } };
 }
 
-static void nearest_is_what_brute_force_finds(void **state)
+TEST(nearest_is_what_brute_force_finds)
 {
-    (void)state;
     struct dig_curve_set *const set  = made_table(&plain);
     uint64_t                    seed = 21;
     for (int trial = 0; trial < 200; trial++) {
@@ -60,9 +59,8 @@ static void nearest_is_what_brute_force_finds(void **state)
     made_table_destroy(set);
 }
 
-static void an_entry_without_the_trajectory_is_passed_over(void **state)
+TEST(an_entry_without_the_trajectory_is_passed_over)
 {
-    (void)state;
     struct dig_curve_set *const  set = made_table(&plain);
     const struct dig_observation o   = made_observation(&set->gravel[5], MADE_ACTUAL, 0.0);
     struct dig_match             match;
@@ -80,9 +78,8 @@ static void an_entry_without_the_trajectory_is_passed_over(void **state)
 }
 
 // 15 % of spread about a mean of three packings, and a measurement's 10 %, in quadrature.
-static void the_noise_floor_is_one_dig_about_a_mean_of_few(void **state)
+TEST(the_noise_floor_is_one_dig_about_a_mean_of_few)
 {
-    (void)state;
     struct dig_curve_set *const set = made_table(&plain);
     struct dig_observation      o   = made_observation(&set->gravel[17], MADE_SIMPLE_A, 0.0);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -94,9 +91,8 @@ static void the_noise_floor_is_one_dig_about_a_mean_of_few(void **state)
     made_table_destroy(set);
 }
 
-static void a_dig_far_from_every_gravel_is_outside(void **state)
+TEST(a_dig_far_from_every_gravel_is_outside)
 {
-    (void)state;
     struct dig_curve_set *const set = made_table(&plain);
     struct dig_observation      o   = made_observation(&set->gravel[47], MADE_SIMPLE_A, 0.0);
     struct dig_match            match;
@@ -110,9 +106,8 @@ static void a_dig_far_from_every_gravel_is_outside(void **state)
     made_table_destroy(set);
 }
 
-static void interpolation_meets_the_entries_and_their_products_between(void **state)
+TEST(interpolation_meets_the_entries_and_their_products_between)
 {
-    (void)state;
     struct dig_curve_set *const set = made_table(&plain);
     struct dig_curve            curve;
     for (size_t e = 0; e < set->entries; e++) {
@@ -136,9 +131,8 @@ static void interpolation_meets_the_entries_and_their_products_between(void **st
     made_table_destroy(set);
 }
 
-static void outside_the_grid_and_beside_a_hole_nothing_is_interpolated(void **state)
+TEST(outside_the_grid_and_beside_a_hole_nothing_is_interpolated)
 {
-    (void)state;
     const struct made_options   holed = { .relative_sd = 0.15, .packings = 3, .hole = true };
     struct dig_curve_set *const set   = made_table(&holed);
     const struct dig_gravel     bad[] = {
@@ -161,9 +155,8 @@ static void outside_the_grid_and_beside_a_hole_nothing_is_interpolated(void **st
     made_table_destroy(set);
 }
 
-static void an_observation_that_is_none_is_refused_and_writes_nothing(void **state)
+TEST(an_observation_that_is_none_is_refused_and_writes_nothing)
 {
-    (void)state;
     struct dig_curve_set *const  set  = made_table(&plain);
     const struct dig_observation good = made_observation(&set->gravel[3], MADE_SIMPLE_A, 0.0);
     struct dig_observation       bad[8];
@@ -193,9 +186,8 @@ static void an_observation_that_is_none_is_refused_and_writes_nothing(void **sta
 
 // An axis is told while its interval takes no more than half of it: 0.3 to 0.9, 0.1 to 1, and
 // density by its logarithm.
-static void an_axis_is_told_by_the_width_of_its_interval(void **state)
+TEST(an_axis_is_told_by_the_width_of_its_interval)
 {
-    (void)state;
     struct dig_curve_set *const set   = made_table(&(struct made_options){ .packings = 3 });
     struct dig_match            match = { .valid = true, .samples = 32 };
     const double                first = set->axis[DIG_AXIS_DENSITY_kgpm3][0];
@@ -227,19 +219,4 @@ static void an_axis_is_told_by_the_width_of_its_interval(void **state)
     dig_match_find_family(set, &match);
     assert_false(dig_match_is_family(&match));
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_axis_is_told_by_the_width_of_its_interval),
-        cmocka_unit_test(nearest_is_what_brute_force_finds),
-        cmocka_unit_test(an_entry_without_the_trajectory_is_passed_over),
-        cmocka_unit_test(the_noise_floor_is_one_dig_about_a_mean_of_few),
-        cmocka_unit_test(a_dig_far_from_every_gravel_is_outside),
-        cmocka_unit_test(interpolation_meets_the_entries_and_their_products_between),
-        cmocka_unit_test(outside_the_grid_and_beside_a_hole_nothing_is_interpolated),
-        cmocka_unit_test(an_observation_that_is_none_is_refused_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("match", tests, NULL, NULL);
 }

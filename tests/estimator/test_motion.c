@@ -54,9 +54,8 @@ static void stand(struct hand *const h, const int ticks)
 }
 
 // Each leg of the rig's trajectories by its name, and by its end.
-static void legs_are_told_by_how_the_tooth_moves(void **state)
+TEST(legs_are_told_by_how_the_tooth_moves)
 {
-    (void)state;
     const enum dig_motion legs[MADE_TRAJECTORIES][5] = {
         { DIG_MOTION_PENETRATION, DIG_MOTION_DRAG, DIG_MOTION_LIFT },
         { DIG_MOTION_PENETRATION, DIG_MOTION_CURL },
@@ -77,9 +76,8 @@ static void legs_are_told_by_how_the_tooth_moves(void **state)
 
 // A pin that goes along while the bucket turns by three quarters of that: with its tooth ahead it
 // lifts, with its tooth below it drags.
-static void it_is_the_tooth_that_counts(void **state)
+TEST(it_is_the_tooth_that_counts)
 {
-    (void)state;
     struct hand ahead = start(80.0 * DIG_RAD_PER_DEG);
     go(&ahead, 0.02, 0.0, 0.015 / tooth_m);
     assert_int_equal(ahead.told, DIG_MOTION_LIFT);
@@ -88,9 +86,8 @@ static void it_is_the_tooth_that_counts(void **state)
     assert_int_equal(below.told, DIG_MOTION_DRAG);
 }
 
-static void a_pause_keeps_what_it_was(void **state)
+TEST(a_pause_keeps_what_it_was)
 {
-    (void)state;
     struct hand h = start(0.0);
     h.noise_m     = 0.0005; // 5 mm on a machine ten times the rig
     go(&h, 0.02, 0.0, 0.0);
@@ -105,9 +102,8 @@ static void a_pause_keeps_what_it_was(void **state)
     assert_int_equal(h.told, DIG_MOTION_LIFT);
 }
 
-static void a_step_back_or_an_opened_bucket_keeps_what_it_was(void **state)
+TEST(a_step_back_or_an_opened_bucket_keeps_what_it_was)
 {
-    (void)state;
     struct hand h = start(0.0);
     go(&h, 0.02, 0.0, 0.0);
     go(&h, -0.02, 0.0, 0.0);
@@ -124,9 +120,8 @@ static void a_step_back_or_an_opened_bucket_keeps_what_it_was(void **state)
 }
 
 // A way along the border does not go to and fro: it is told what it was before.
-static void at_a_border_it_stays_what_it_was(void **state)
+TEST(at_a_border_it_stays_what_it_was)
 {
-    (void)state;
     const double slope[] = { 28.0, 32.0 };
     for (int i = 0; i < 2; i++) {
         const double rad     = slope[i] * DIG_RAD_PER_DEG;
@@ -153,9 +148,8 @@ static void at_a_border_it_stays_what_it_was(void **state)
 }
 
 // Nothing is told in the air, and nothing of the dig before; what is done meanwhile counts at once.
-static void only_what_is_in_the_soil_is_told(void **state)
+TEST(only_what_is_in_the_soil_is_told)
 {
-    (void)state;
     struct hand h = start(0.0);
     tick(&h, DIG_PHASE_DIG);
     assert_int_equal(h.told, DIG_MOTION_NONE); // it has not moved yet
@@ -182,9 +176,8 @@ static void only_what_is_in_the_soil_is_told(void **state)
 }
 
 // tan(a/2) falls by e a rope's length behind a corner; the rope is a thirtieth of the tooth.
-static void a_corner_is_noticed_within_a_rope_or_so(void **state)
+TEST(a_corner_is_noticed_within_a_rope_or_so)
 {
-    (void)state;
     struct hand h = start(0.0);
     go(&h, 0.03, 0.0, 0.0);
     double way_m = 0.0;
@@ -198,18 +191,4 @@ static void a_corner_is_noticed_within_a_rope_or_so(void **state)
     const double rope_m   = tooth_m / 30.0;
     const double expected = -rope_m * log(tan(0.5 * 55.0 * DIG_RAD_PER_DEG));
     assert_close(way_m, expected, 0.1 * expected);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(legs_are_told_by_how_the_tooth_moves),
-        cmocka_unit_test(it_is_the_tooth_that_counts),
-        cmocka_unit_test(a_pause_keeps_what_it_was),
-        cmocka_unit_test(a_step_back_or_an_opened_bucket_keeps_what_it_was),
-        cmocka_unit_test(at_a_border_it_stays_what_it_was),
-        cmocka_unit_test(only_what_is_in_the_soil_is_told),
-        cmocka_unit_test(a_corner_is_noticed_within_a_rope_or_so),
-    };
-    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
 }

@@ -99,9 +99,8 @@ static int nearest_of(const struct dig_curve_set *const set, const size_t digs,
     return by.nearest;
 }
 
-static void it_finds_what_a_look_at_all_finds_in_smooth_families(void **state)
+TEST(it_finds_what_a_look_at_all_finds_in_smooth_families)
 {
-    (void)state;
     const struct made_options   options = { .relative_sd = 0.15, .packings = 3 };
     struct dig_curve_set *const set     = made_table(&options);
     uint64_t                    seed    = 5;
@@ -123,9 +122,8 @@ static void it_finds_what_a_look_at_all_finds_in_smooth_families(void **state)
     made_table_destroy(set);
 }
 
-static void it_finds_what_a_look_at_all_finds_among_random_curves(void **state)
+TEST(it_finds_what_a_look_at_all_finds_among_random_curves)
 {
-    (void)state;
     enum { ENTRIES = 400, TRAJECTORIES = 2 };
     struct dig_curve_set *const set  = empty_set(ENTRIES, TRAJECTORIES);
     uint64_t                    seed = 11;
@@ -147,9 +145,8 @@ static void it_finds_what_a_look_at_all_finds_among_random_curves(void **state)
     made_table_destroy(set);
 }
 
-static void of_entries_all_alike_it_finds_the_first_that_was_dug(void **state)
+TEST(of_entries_all_alike_it_finds_the_first_that_was_dug)
 {
-    (void)state;
     enum { ENTRIES = 100 };
     struct dig_curve_set *const set  = empty_set(ENTRIES, 1);
     uint64_t                    seed = 12;
@@ -173,9 +170,8 @@ static void of_entries_all_alike_it_finds_the_first_that_was_dug(void **state)
 }
 
 // A hair apart: less than what rounding moves an outline by. And outlines that are all the same.
-static void what_no_outline_can_tell_apart_is_compared_in_full(void **state)
+TEST(what_no_outline_can_tell_apart_is_compared_in_full)
 {
-    (void)state;
     enum { ENTRIES = 200 };
     struct dig_curve_set *const set  = empty_set(ENTRIES, 1);
     uint64_t                    seed = 13;
@@ -206,9 +202,8 @@ static void what_no_outline_can_tell_apart_is_compared_in_full(void **state)
 }
 
 // The smallest numbers there are have no digits to round to: an outline is off by half of itself.
-static void the_smallest_numbers_are_compared(void **state)
+TEST(the_smallest_numbers_are_compared)
 {
-    (void)state;
     enum { ENTRIES = 200 };
     static const double         smallest = 0x1p-149;
     struct dig_curve_set *const set      = empty_set(ENTRIES, 1);
@@ -227,9 +222,8 @@ static void the_smallest_numbers_are_compared(void **state)
     made_table_destroy(set);
 }
 
-static void numbers_of_any_size_are_compared(void **state)
+TEST(numbers_of_any_size_are_compared)
 {
-    (void)state;
     enum { ENTRIES = 60 };
     struct dig_curve_set *const set  = empty_set(ENTRIES, 1);
     uint64_t                    seed = 14;
@@ -247,9 +241,8 @@ static void numbers_of_any_size_are_compared(void **state)
     made_table_destroy(set);
 }
 
-static void curves_that_are_no_numbers_are_passed_over(void **state)
+TEST(curves_that_are_no_numbers_are_passed_over)
 {
-    (void)state;
     enum { ENTRIES = 50 };
     struct dig_curve_set *const set  = empty_set(ENTRIES, 1);
     uint64_t                    seed = 15;
@@ -272,9 +265,8 @@ static void curves_that_are_no_numbers_are_passed_over(void **state)
     made_table_destroy(set);
 }
 
-static void one_entry_is_found_and_none_is_refused(void **state)
+TEST(one_entry_is_found_and_none_is_refused)
 {
-    (void)state;
     struct dig_curve_set *const set  = empty_set(1, 1);
     uint64_t                    seed = 16;
     wander(moment_of(set, 0, 0), 0.1, &seed);
@@ -285,9 +277,8 @@ static void one_entry_is_found_and_none_is_refused(void **state)
     made_table_destroy(set);
 }
 
-static void what_is_refused_of_all_entries_is_refused_by_a_summary(void **state)
+TEST(what_is_refused_of_all_entries_is_refused_by_a_summary)
 {
-    (void)state;
     struct dig_curve_set *const set  = empty_set(1, 1);
     uint64_t                    seed = 17;
     wander(moment_of(set, 0, 0), 0.1, &seed);
@@ -307,9 +298,8 @@ static void what_is_refused_of_all_entries_is_refused_by_a_summary(void **state)
 
 // Curves whose outline is far away are exchanged, behind the summary's back, for what was measured:
 // whoever looks at one finds it. The nearest is among those that the search begins with.
-static void what_is_far_by_its_outline_is_not_looked_at(void **state)
+TEST(what_is_far_by_its_outline_is_not_looked_at)
 {
-    (void)state;
     enum { ENTRIES = 300, NEAREST = 9 * 17 };
     struct dig_curve_set *const set  = empty_set(ENTRIES, 1);
     uint64_t                    seed = 18;
@@ -332,21 +322,4 @@ static void what_is_far_by_its_outline_is_not_looked_at(void **state)
     assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, 2.5, &match), DIG_OK);
     assert_int_equal(match.nearest, NEAREST);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_finds_what_a_look_at_all_finds_in_smooth_families),
-        cmocka_unit_test(it_finds_what_a_look_at_all_finds_among_random_curves),
-        cmocka_unit_test(of_entries_all_alike_it_finds_the_first_that_was_dug),
-        cmocka_unit_test(what_no_outline_can_tell_apart_is_compared_in_full),
-        cmocka_unit_test(the_smallest_numbers_are_compared),
-        cmocka_unit_test(numbers_of_any_size_are_compared),
-        cmocka_unit_test(curves_that_are_no_numbers_are_passed_over),
-        cmocka_unit_test(one_entry_is_found_and_none_is_refused),
-        cmocka_unit_test(what_is_refused_of_all_entries_is_refused_by_a_summary),
-        cmocka_unit_test(what_is_far_by_its_outline_is_not_looked_at),
-    };
-    return cmocka_run_group_tests_name("nearest", tests, NULL, NULL);
 }

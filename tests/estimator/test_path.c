@@ -68,9 +68,8 @@ static int choose(const struct dig_path *const path, struct dig_track fitted[MAD
 
 // Wherever the ground lies, however late contact was noticed (up to the whole first leg), with ten
 // times the noise of a bus: the confusion matrix is diagonal and the shift is found.
-static void every_trajectory_is_told_from_the_others(void **state)
+TEST(every_trajectory_is_told_from_the_others)
 {
-    (void)state;
     int      confusion[MADE_TRAJECTORIES][MADE_TRAJECTORIES + 1] = { { 0 } };
     uint64_t seed                                                = 17;
     for (int trial = 0; trial < 90; trial++) {
@@ -105,9 +104,8 @@ static void every_trajectory_is_told_from_the_others(void **state)
 
 // In weak gravel contact is felt only in the drag. The first leg lies before it, among vertices
 // that may all have been air, and has to be found there.
-static void contact_felt_after_the_first_leg_still_finds_it(void **state)
+TEST(contact_felt_after_the_first_leg_still_finds_it)
 {
-    (void)state;
     const struct drive drive = {
         .dx_m = -0.2, .dz_m = 0.1, .late = 0.28, .until = 0.75, .noise_m = 0.0001, .seed = 12
     };
@@ -119,9 +117,8 @@ static void contact_felt_after_the_first_leg_still_finds_it(void **state)
 }
 
 // simpleB and actual begin alike: until they part, the honest answer is that it is not known.
-static void what_two_trajectories_share_is_not_known(void **state)
+TEST(what_two_trajectories_share_is_not_known)
 {
-    (void)state;
     struct dig_track      fitted[MADE_TRAJECTORIES];
     const struct drive    shared = { .until = 0.12, .noise_m = 0.0001, .seed = 3 };
     const struct dig_path path   = drive_along(MADE_ACTUAL, shared);
@@ -134,9 +131,8 @@ static void what_two_trajectories_share_is_not_known(void **state)
     assert_int_equal(dig_track_choose(3, track_of, limit_m, MADE_SIMPLE_A), -1);
 }
 
-static void a_path_that_is_none_of_them_is_not_known(void **state)
+TEST(a_path_that_is_none_of_them_is_not_known)
 {
-    (void)state;
     struct dig_path path = { .spacing_m = 0.00225 };
     for (int i = 0; i < 60; i++) { // a level drag with the bucket curled in
         const struct dig_path_point p = { 0.002 * i, 0.1, tooth_m * 0.9 };
@@ -146,9 +142,8 @@ static void a_path_that_is_none_of_them_is_not_known(void **state)
     assert_int_equal(choose(&path, fitted), -1);
 }
 
-static void a_follower_finds_its_way_while_the_dig_goes_on(void **state)
+TEST(a_follower_finds_its_way_while_the_dig_goes_on)
 {
-    (void)state;
     const struct dig_trajectory t     = made_trajectory(MADE_SIMPLE_A);
     const struct dig_route      route = dig_route_make(&t, tooth_m);
     struct drive    drive = { .dx_m = 0.1, .dz_m = -0.05, .noise_m = 0.0001, .seed = 2 };
@@ -174,9 +169,8 @@ static void a_follower_finds_its_way_while_the_dig_goes_on(void **state)
 }
 
 // Brute force over a fine sampling of the polyline.
-static void the_nearest_place_is_the_nearest(void **state)
+TEST(the_nearest_place_is_the_nearest)
 {
-    (void)state;
     const struct dig_trajectory t     = made_trajectory(MADE_ACTUAL);
     const struct dig_route      route = dig_route_make(&t, tooth_m);
     uint64_t                    seed  = 6;
@@ -198,9 +192,8 @@ static void the_nearest_place_is_the_nearest(void **state)
 }
 
 // Coming down along the first leg's own line is no distance from the route, and no progress.
-static void the_way_to_the_start_is_on_the_route(void **state)
+TEST(the_way_to_the_start_is_on_the_route)
 {
-    (void)state;
     const struct dig_trajectory t     = made_trajectory(MADE_SIMPLE_A);
     const struct dig_route      route = dig_route_make(&t, tooth_m);
     for (int i = 0; i < 50; i++) {
@@ -213,9 +206,8 @@ static void the_way_to_the_start_is_on_the_route(void **state)
     }
 }
 
-static void a_full_path_is_thinned_and_keeps_its_contact(void **state)
+TEST(a_full_path_is_thinned_and_keeps_its_contact)
 {
-    (void)state;
     struct dig_path path = { .spacing_m = 0.001 };
     for (int i = 0; i < 3 * DIG_PATH_MAX; i++) {
         const struct dig_path_point p = { 0.0011 * i, 0.0, 0.0 };
@@ -230,9 +222,8 @@ static void a_full_path_is_thinned_and_keeps_its_contact(void **state)
     assert_int_equal(path.end, path.vertices);
 }
 
-static void a_choice_is_told_once_it_has_held(void **state)
+TEST(a_choice_is_told_once_it_has_held)
 {
-    (void)state;
     struct dig_choice choice = { .current = -1, .candidate = -1 };
     for (int i = 0; i < 1000; i++) { // flickering between two is no choice
         assert_int_equal(dig_choice_step(&choice, 3, i / 40 % 2 == 0 ? 1 : 2), -1);
@@ -243,20 +234,4 @@ static void a_choice_is_told_once_it_has_held(void **state)
     }
     assert_true(ticks < 100);
     assert_int_equal(dig_choice_step(&choice, 3, 0), 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_trajectory_is_told_from_the_others),
-        cmocka_unit_test(contact_felt_after_the_first_leg_still_finds_it),
-        cmocka_unit_test(what_two_trajectories_share_is_not_known),
-        cmocka_unit_test(a_path_that_is_none_of_them_is_not_known),
-        cmocka_unit_test(a_follower_finds_its_way_while_the_dig_goes_on),
-        cmocka_unit_test(the_nearest_place_is_the_nearest),
-        cmocka_unit_test(a_choice_is_told_once_it_has_held),
-        cmocka_unit_test(the_way_to_the_start_is_on_the_route),
-        cmocka_unit_test(a_full_path_is_thinned_and_keeps_its_contact),
-    };
-    return cmocka_run_group_tests_name("path", tests, NULL, NULL);
 }

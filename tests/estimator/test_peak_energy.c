@@ -25,9 +25,8 @@ static double highest(const float moment_Nm[DIG_CURVE_POINTS])
 
 // By hand: a constant force of -2 N along a drag of 92.6 mm, of -3 N along a sink of 26.137 mm (it
 // pushes down, with the motion), back over 36.6 mm of lift, and 0.5 Nm over a turn.
-static void energy_is_what_the_bucket_does_on_the_soil(void **state)
+TEST(energy_is_what_the_bucket_does_on_the_soil)
 {
-    (void)state;
     static const double         force[DIG_FORCE_CHANNELS] = { 0.5, -2.0, -3.0 };
     const struct dig_trajectory t[]                       = { made_trajectory(MADE_SIMPLE_A),
                                                               made_trajectory(MADE_SIMPLE_B) };
@@ -50,9 +49,8 @@ static void energy_is_what_the_bucket_does_on_the_soil(void **state)
 }
 
 // Without any scatter, and one packing alone: a dig's own peak, and what two gravels differ by.
-static void what_does_not_scatter_peaks_where_the_table_does(void **state)
+TEST(what_does_not_scatter_peaks_where_the_table_does)
 {
-    (void)state;
     const struct made_options   still = { .relative_sd = 0.0, .packings = 3 };
     struct dig_curve_set *const set   = made_table(&still);
     struct dig_match            match = sure_of(set, 5);
@@ -86,9 +84,8 @@ static void what_does_not_scatter_peaks_where_the_table_does(void **state)
 
 // Each packing of the table against the table without it: the peak told is met in the mean, and as
 // many lie within a sigma, and in the 90 % band, as its name says.
-static void packings_left_out_peak_and_take_what_is_told(void **state)
+TEST(packings_left_out_peak_and_take_what_is_told)
 {
-    (void)state;
     struct table_runs *const t = calloc(1, sizeof *t);
     assert_non_null(t);
     assert_int_equal(table_runs_read("tables/reference_rig.sqlite", NULL, t, NULL), DIG_OK);
@@ -140,9 +137,8 @@ static void packings_left_out_peak_and_take_what_is_told(void **state)
     free(t);
 }
 
-static void refusals_write_nothing(void **state)
+TEST(refusals_write_nothing)
 {
-    (void)state;
     const struct made_options   plain = { .relative_sd = 0.1, .packings = 3 };
     struct dig_curve_set *const set   = made_table(&plain);
     struct dig_match            match = sure_of(set, 7);
@@ -158,15 +154,4 @@ static void refusals_write_nothing(void **state)
     assert_int_equal(dig_peak_energy_predict(set, &match, 1, &whole), DIG_EINVAL);
     assert_memory_equal(&whole, &before, sizeof whole);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_is_what_the_bucket_does_on_the_soil),
-        cmocka_unit_test(what_does_not_scatter_peaks_where_the_table_does),
-        cmocka_unit_test(packings_left_out_peak_and_take_what_is_told),
-        cmocka_unit_test(refusals_write_nothing),
-    };
-    return cmocka_run_group_tests_name("whole", tests, NULL, NULL);
 }

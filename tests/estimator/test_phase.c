@@ -35,9 +35,8 @@ static void hold(struct run *const run, const double moment_Nm, const double sec
     }
 }
 
-static void a_dig_runs_through_all_phases_once(void **state)
+TEST(a_dig_runs_through_all_phases_once)
 {
-    (void)state;
     struct run run = start();
     hold(&run, 0.0, 5.0);
     assert_int_equal(run.state.phase, DIG_PHASE_AIR);
@@ -54,18 +53,16 @@ static void a_dig_runs_through_all_phases_once(void **state)
     assert_int_equal(run.lost, 0);
 }
 
-static void an_hour_of_noise_is_no_contact(void **state)
+TEST(an_hour_of_noise_is_no_contact)
 {
-    (void)state;
     struct run run = start();
     hold(&run, 0.0, 3600.0);
     hold(&run, 50.0, 600.0); // half a sigma of bias, a third of the threshold
     assert_int_equal(run.touched, 0);
 }
 
-static void single_samples_decide_nothing(void **state)
+TEST(single_samples_decide_nothing)
 {
-    (void)state;
     struct run run = start();
     hold(&run, 0.0, 1.0);
     for (int i = 0; i < 100; i++) {
@@ -75,9 +72,8 @@ static void single_samples_decide_nothing(void **state)
     assert_int_equal(run.touched, 0);
 }
 
-static void a_hesitation_shorter_than_the_exit_hold_is_one_dig(void **state)
+TEST(a_hesitation_shorter_than_the_exit_hold_is_one_dig)
 {
-    (void)state;
     struct run run = start();
     hold(&run, 2000.0, 3.0);
     hold(&run, 0.0, 0.7);
@@ -89,9 +85,8 @@ static void a_hesitation_shorter_than_the_exit_hold_is_one_dig(void **state)
     assert_int_equal(run.gone, 1);
 }
 
-static void near_the_threshold_it_does_not_flicker(void **state)
+TEST(near_the_threshold_it_does_not_flicker)
 {
-    (void)state;
     struct run run = start();
     hold(&run, 2000.0, 2.0);
     hold(&run, 1.5 * sigma_Nm, 60.0); // on the threshold, twice the other one
@@ -100,9 +95,8 @@ static void near_the_threshold_it_does_not_flicker(void **state)
     assert_int_equal(run.gone + run.lost, 0);
 }
 
-static void a_touch_that_does_not_last_is_lost(void **state)
+TEST(a_touch_that_does_not_last_is_lost)
 {
-    (void)state;
     struct run run              = start();
     run.settings.contact_hold_s = 0.3;
     hold(&run, 250.0, 0.65);
@@ -113,9 +107,8 @@ static void a_touch_that_does_not_last_is_lost(void **state)
     assert_int_equal(run.gone, 0);
 }
 
-static void a_dig_ended_from_outside_waits_for_free_air(void **state)
+TEST(a_dig_ended_from_outside_waits_for_free_air)
 {
-    (void)state;
     struct run run = start();
     hold(&run, 2000.0, 3.0);
     dig_phase_end(&run.state);
@@ -130,9 +123,8 @@ static void a_dig_ended_from_outside_waits_for_free_air(void **state)
 
 // A quantiser without noise may stand off by more than a sigma for as long as the bucket hangs
 // still.
-static void what_no_filter_takes_away_raises_the_threshold(void **state)
+TEST(what_no_filter_takes_away_raises_the_threshold)
 {
-    (void)state;
     struct run run = start();
     for (int i = 0; i < 4000; i++) {
         const enum dig_phase_event event = dig_phase_step(&run.state, &run.settings, dt_s,
@@ -143,9 +135,8 @@ static void what_no_filter_takes_away_raises_the_threshold(void **state)
     assert_int_equal(run.touched, 1);
 }
 
-static void bias_is_learnt_in_air_only_and_only_when_asked(void **state)
+TEST(bias_is_learnt_in_air_only_and_only_when_asked)
 {
-    (void)state;
     struct run off = start(), on = start();
     on.settings.air_bias_s = 2.0;
     hold(&off, 50.0, 30.0);
@@ -155,20 +146,4 @@ static void bias_is_learnt_in_air_only_and_only_when_asked(void **state)
 
     hold(&on, 5000.0, 30.0);
     assert_close(on.state.bias_Nm, 50.0, 20.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_dig_runs_through_all_phases_once),
-        cmocka_unit_test(an_hour_of_noise_is_no_contact),
-        cmocka_unit_test(single_samples_decide_nothing),
-        cmocka_unit_test(a_hesitation_shorter_than_the_exit_hold_is_one_dig),
-        cmocka_unit_test(near_the_threshold_it_does_not_flicker),
-        cmocka_unit_test(a_touch_that_does_not_last_is_lost),
-        cmocka_unit_test(a_dig_ended_from_outside_waits_for_free_air),
-        cmocka_unit_test(what_no_filter_takes_away_raises_the_threshold),
-        cmocka_unit_test(bias_is_learnt_in_air_only_and_only_when_asked),
-    };
-    return cmocka_run_group_tests_name("phase", tests, NULL, NULL);
 }

@@ -48,9 +48,8 @@ static void dig_there(const struct dig_gravel *const gravel, const enum made_tra
     }
 }
 
-static void the_oldest_leaves_a_full_pool(void **state)
+TEST(the_oldest_leaves_a_full_pool)
 {
-    (void)state;
     static struct dig_pool       pool;
     const struct dig_gravel      gravel = { { 0.5, 0.5, 2500 } };
     const struct dig_observation one    = made_observation(&gravel, MADE_SIMPLE_A, 0.0);
@@ -65,9 +64,8 @@ static void the_oldest_leaves_a_full_pool(void **state)
 }
 
 // The test's own sums: two trajectories, other ranges, sigmas of their own.
-static void sums_are_what_brute_force_adds_up(void **state)
+TEST(sums_are_what_brute_force_adds_up)
 {
-    (void)state;
     enum { DIGS = 5 };
     struct dig_curve_set *const set  = made_table(&few);
     uint64_t                    seed = 5;
@@ -112,9 +110,8 @@ static void sums_are_what_brute_force_adds_up(void **state)
     made_table_destroy(set);
 }
 
-static void a_gravel_without_one_of_the_trajectories_is_passed_over(void **state)
+TEST(a_gravel_without_one_of_the_trajectories_is_passed_over)
 {
-    (void)state;
     struct dig_curve_set *const  set    = made_table(&few);
     const struct dig_observation dig[2] = { made_observation(&set->gravel[5], MADE_SIMPLE_A, 0.0),
                                             made_observation(&set->gravel[5], MADE_SIMPLE_B, 0.0) };
@@ -129,9 +126,8 @@ static void a_gravel_without_one_of_the_trajectories_is_passed_over(void **state
 
 // Nine of ten gravels lie in their interval however many digs it comes from, and it narrows as the
 // digs' own scatter does: to what the table is wrong by, not to nothing.
-static void more_digs_tell_more_and_never_too_much(void **state)
+TEST(more_digs_tell_more_and_never_too_much)
 {
-    (void)state;
     static const size_t digs[] = { 1, 2, 4, 8 };
     enum { STEPS = sizeof digs / sizeof digs[0] };
     struct dig_curve_set *const set             = made_table(&flat);
@@ -174,9 +170,8 @@ static void more_digs_tell_more_and_never_too_much(void **state)
 }
 
 // The same digs in another order, and along two trajectories, say the same or more.
-static void trajectories_add_up(void **state)
+TEST(trajectories_add_up)
 {
-    (void)state;
     struct dig_curve_set *const set    = made_table(&flat);
     uint64_t                    seed   = 11;
     const struct dig_gravel     gravel = { { 0.62, 0.4, 2500 } };
@@ -197,9 +192,8 @@ static void trajectories_add_up(void **state)
 }
 
 // Who has more digs than a pool keeps may match them all.
-static void twice_the_digs_of_a_pool_add_up(void **state)
+TEST(twice_the_digs_of_a_pool_add_up)
 {
-    (void)state;
     enum { MANY = 2 * DIG_POOL_MAX };
     struct dig_curve_set *const set    = made_table(&flat);
     uint64_t                    seed   = 5;
@@ -212,9 +206,8 @@ static void twice_the_digs_of_a_pool_add_up(void **state)
     made_table_destroy(set);
 }
 
-static void refusals_write_nothing(void **state)
+TEST(refusals_write_nothing)
 {
-    (void)state;
     struct dig_curve_set *const set = made_table(&flat);
     struct dig_observation      dig[3];
     for (int d = 0; d < 3; d++) {
@@ -233,18 +226,4 @@ static void refusals_write_nothing(void **state)
     assert_int_equal(dig_fit_refine(set, NULL, 3, dig, 10, &match), DIG_EINVAL);
     assert_memory_equal(&match, &before, sizeof match);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_oldest_leaves_a_full_pool),
-        cmocka_unit_test(sums_are_what_brute_force_adds_up),
-        cmocka_unit_test(a_gravel_without_one_of_the_trajectories_is_passed_over),
-        cmocka_unit_test(more_digs_tell_more_and_never_too_much),
-        cmocka_unit_test(trajectories_add_up),
-        cmocka_unit_test(twice_the_digs_of_a_pool_add_up),
-        cmocka_unit_test(refusals_write_nothing),
-    };
-    return cmocka_run_group_tests_name("pool", tests, NULL, NULL);
 }

@@ -96,9 +96,8 @@ static void dig_there(const struct dig_gravel *const gravel, const size_t digs,
     }
 }
 
-static void forces_tell_more_and_never_too_much(void **state)
+TEST(forces_tell_more_and_never_too_much)
 {
-    (void)state;
     enum { STEPS = 3 };
     static const size_t         digs[STEPS]     = { 1, 1, 4 };
     struct dig_curve_set *const set             = table_with_forces();
@@ -138,9 +137,8 @@ static void forces_tell_more_and_never_too_much(void **state)
 }
 
 // One dig without forces, and the moment alone is compared: as if none had them.
-static void forces_count_only_where_every_dig_has_them(void **state)
+TEST(forces_count_only_where_every_dig_has_them)
 {
-    (void)state;
     struct dig_curve_set *const set  = table_with_forces();
     uint64_t                    seed = 8;
     struct dig_observation      dig[3];
@@ -181,9 +179,8 @@ static void expect_the_same(const struct dig_match *const a, const struct dig_ma
 
 // The moment of a gravel of the table, and a push that none has: outside, and the gravel is the one
 // the moment alone tells. Digs of the table with the forces that belong to them are inside.
-static void forces_that_no_gravel_has_are_told_and_done_without(void **state)
+TEST(forces_that_no_gravel_has_are_told_and_done_without)
 {
-    (void)state;
     struct dig_curve_set *const set  = table_with_forces();
     uint64_t                    seed = 77;
     for (int trial = 0; trial < 20; trial++) {
@@ -216,9 +213,8 @@ static void forces_that_no_gravel_has_are_told_and_done_without(void **state)
 
 // Of digs in the gravel it is asked about the excess is a standard deviation of its own about 0, of
 // whole digs and of parts, of one and of several: the same limit means the same for all.
-static void excess_has_one_scale_for_digs_of_any_length(void **state)
+TEST(excess_has_one_scale_for_digs_of_any_length)
 {
-    (void)state;
     enum { CASES = 3, TRIALS = 200 };
     static const double         last[CASES] = { 1.0, 0.4, 1.0 };
     static const size_t         digs[CASES] = { 1, 1, 3 };
@@ -253,15 +249,4 @@ static void excess_has_one_scale_for_digs_of_any_length(void **state)
     dig_pool_sum(1, &dig, &sums);
     assert_true(isinf(dig_posterior_excess(set, NULL, &sums, &none)));
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_tell_more_and_never_too_much),
-        cmocka_unit_test(forces_that_no_gravel_has_are_told_and_done_without),
-        cmocka_unit_test(excess_has_one_scale_for_digs_of_any_length),
-        cmocka_unit_test(forces_count_only_where_every_dig_has_them),
-    };
-    return cmocka_run_group_tests_name("posterior", tests, NULL, NULL);
 }

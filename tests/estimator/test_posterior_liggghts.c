@@ -29,9 +29,8 @@ static struct dig_observation reference(const struct dig_curve_set *const set,
 // Gravels of LIGGGHTS: one without rolling friction, which the table does not have, and three that
 // it has. The limit was lowered from 4 to 3 because the first of them had come to lie below it;
 // that 3 is no false alarm was measured on the table's own digs.
-static void a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts(void **state)
+TEST(a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts)
 {
-    (void)state;
     static const char *const gravels[] = { "mu0.5_mur0.0", "mu0.3_mur0.3", "mu0.5_mur0.5",
                                            "mu0.9_mur0.9" };
     struct dig_curve_set    *set       = NULL;
@@ -78,9 +77,8 @@ static void add_reference(const struct dig_curve_set *const set, const char *con
 
 // Density and friction, which the moment cannot tell apart, the forces can: on digs of another
 // code, which had no part in anything here.
-static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
+TEST(forces_tell_the_family_apart_on_digs_of_liggghts)
 {
-    (void)state;
     struct dig_curve_set *set = NULL;
     assert_int_equal(dig_table_load("tables/reference_rig.sqlite", &set, NULL), DIG_OK);
     static const struct {
@@ -105,13 +103,4 @@ static void forces_tell_the_family_apart_on_digs_of_liggghts(void **state)
         assert_true(off[1][a] < off[0][a] && off[1][a] / 6.0 < most[a]);
     }
     dig_curve_set_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_tell_the_family_apart_on_digs_of_liggghts),
-        cmocka_unit_test(a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts),
-    };
-    return cmocka_run_group_tests_name("posterior", tests, NULL, NULL);
 }

@@ -42,9 +42,8 @@ static void tell(const struct dig_curve_set *const table, const char *const path
     free(all);
 }
 
-static void the_interval_holds_gravels_that_no_table_has(void **state)
+TEST(the_interval_holds_gravels_that_no_table_has)
 {
-    (void)state;
     struct dig_curve_set *table = NULL;
     struct dig_error      error = { "" };
     struct tally          t     = { 0 };
@@ -64,12 +63,4 @@ static void the_interval_holds_gravels_that_no_table_has(void **state)
     assert_int_equal(t.digs, 28);
     assert_true(in >= 0.85 * 3 * t.digs);
     dig_curve_set_destroy(table);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_interval_holds_gravels_that_no_table_has),
-    };
-    return cmocka_run_group_tests_name("posterior_shipped", tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static struct dig_match match_of(const size_t samples, const struct dig_gravel s
     return match;
 }
 
-static void a_sure_gravel_is_predicted_as_the_table_has_it(void **state)
+TEST(a_sure_gravel_is_predicted_as_the_table_has_it)
 {
-    (void)state;
     struct dig_curve_set *const set    = made_table(&plain);
     const struct dig_gravel     gravel = { { 0.62, 0.52, 2500 } };
     const struct dig_match      match  = match_of(1, &gravel);
@@ -38,9 +37,8 @@ static void a_sure_gravel_is_predicted_as_the_table_has_it(void **state)
 }
 
 // Two gravels, one as likely as the other: the mean lies between, the spread spans both.
-static void doubt_about_the_gravel_widens_the_prediction(void **state)
+TEST(doubt_about_the_gravel_widens_the_prediction)
 {
-    (void)state;
     struct dig_curve_set *const set       = made_table(&plain);
     const struct dig_gravel     gravels[] = { { { 0.3, 0.4, 2500 } }, { { 0.9, 0.4, 2500 } } };
     const struct dig_match      match     = match_of(2, gravels);
@@ -55,9 +53,8 @@ static void doubt_about_the_gravel_widens_the_prediction(void **state)
     made_table_destroy(set);
 }
 
-static void a_match_not_refined_predicts_for_its_gravel_or_its_entry(void **state)
+TEST(a_match_not_refined_predicts_for_its_gravel_or_its_entry)
 {
-    (void)state;
     struct dig_curve_set *const set   = made_table(&plain);
     struct dig_match            match = { .valid = true, .nearest = 7, .gravel = set->gravel[7] };
     struct dig_curve            curve;
@@ -71,9 +68,8 @@ static void a_match_not_refined_predicts_for_its_gravel_or_its_entry(void **stat
     made_table_destroy(set);
 }
 
-static void refusals_write_nothing(void **state)
+TEST(refusals_write_nothing)
 {
-    (void)state;
     struct dig_curve_set *const set  = made_table(&plain);
     struct dig_match            none = { .valid = false };
     struct dig_match            one  = { .valid = true, .nearest = 7, .gravel = set->gravel[7] };
@@ -90,9 +86,8 @@ static void refusals_write_nothing(void **state)
     made_table_destroy(set);
 }
 
-static void points_ahead_are_the_curve_at_machine_scale(void **state)
+TEST(points_ahead_are_the_curve_at_machine_scale)
 {
-    (void)state;
     struct dig_curve curve;
     memset(&curve, 0, sizeof curve);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -111,16 +106,4 @@ static void points_ahead_are_the_curve_at_machine_scale(void **state)
     assert_close(p.Fx_N[9], 2000.0, 1e-2);
     assert_close(p.sigma_Fx_N[21], 600.0, 1e-2);
     assert_close(p.sigma_Fz_N[9], 3000.0, 1e-2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sure_gravel_is_predicted_as_the_table_has_it),
-        cmocka_unit_test(doubt_about_the_gravel_widens_the_prediction),
-        cmocka_unit_test(a_match_not_refined_predicts_for_its_gravel_or_its_entry),
-        cmocka_unit_test(refusals_write_nothing),
-        cmocka_unit_test(points_ahead_are_the_curve_at_machine_scale),
-    };
-    return cmocka_run_group_tests_name("predict", tests, NULL, NULL);
 }

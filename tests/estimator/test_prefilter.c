@@ -22,9 +22,8 @@ static struct dig_prefilter sum_up(const struct dig_curve_set *const set,
     return summary;
 }
 
-static void an_outline_has_the_means_of_blocks_and_none_of_what_was_not_dug(void **state)
+TEST(an_outline_has_the_means_of_blocks_and_none_of_what_was_not_dug)
 {
-    (void)state;
     struct dig_curve_set *const set          = made_table(&options);
     set->packings[4 * MADE_TRAJECTORIES + 1] = 0;
     struct dig_outline        *outline       = NULL;
@@ -60,9 +59,8 @@ static void an_outline_has_the_means_of_blocks_and_none_of_what_was_not_dug(void
 }
 
 // Block means are drawn once or at every look: the likelihood is the same.
-static void a_likelihood_by_outlines_is_that_by_curves(void **state)
+TEST(a_likelihood_by_outlines_is_that_by_curves)
 {
-    (void)state;
     struct dig_curve_set *const set     = made_table(&options);
     uint64_t                    seed    = 32;
     struct dig_outline         *outline = NULL;
@@ -85,9 +83,8 @@ static void a_likelihood_by_outlines_is_that_by_curves(void **state)
 }
 
 // What the outlines leave out does not move the answer; with a hole, and of a part of a path, too.
-static void a_summary_changes_nothing_that_matters(void **state)
+TEST(a_summary_changes_nothing_that_matters)
 {
-    (void)state;
     struct made_options holed           = options;
     holed.hole                          = true;
     struct dig_curve_set *const set     = made_table(&holed);
@@ -120,14 +117,4 @@ static void a_summary_changes_nothing_that_matters(void **state)
     }
     free(outline);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_outline_has_the_means_of_blocks_and_none_of_what_was_not_dug),
-        cmocka_unit_test(a_likelihood_by_outlines_is_that_by_curves),
-        cmocka_unit_test(a_summary_changes_nothing_that_matters),
-    };
-    return cmocka_run_group_tests_name("prefilter", tests, NULL, NULL);
 }

@@ -18,9 +18,8 @@ static void angles_at(const double t_s, double q[DIG_JOINTS])
     }
 }
 
-static void even_acceleration_is_told_exactly_at_the_windows_end(void **state)
+TEST(even_acceleration_is_told_exactly_at_the_windows_end)
 {
-    (void)state;
     struct dig_rates_filter filter = { .window_s = 0.25 };
     struct dig_rates        rates  = { .velocity_sigma = 0.0 };
     uint64_t                seed   = 1;
@@ -37,9 +36,8 @@ static void even_acceleration_is_told_exactly_at_the_windows_end(void **state)
     }
 }
 
-static void its_sigma_is_what_noise_does(void **state)
+TEST(its_sigma_is_what_noise_does)
 {
-    (void)state;
     const double            sigma  = 2e-4;
     struct dig_rates_filter filter = { .window_s = 0.25 };
     uint64_t                seed   = 2;
@@ -63,9 +61,8 @@ static void its_sigma_is_what_noise_does(void **state)
     assert_close(sqrt(a2 / n) / sa, 1.0, 0.05);
 }
 
-static void too_few_angles_or_a_gap_count_as_still(void **state)
+TEST(too_few_angles_or_a_gap_count_as_still)
 {
-    (void)state;
     struct dig_rates_filter filter = { .window_s = 0.25 };
     double                  q[DIG_JOINTS];
     for (int i = 0; i < 200; i++) {
@@ -81,9 +78,8 @@ static void too_few_angles_or_a_gap_count_as_still(void **state)
     assert_close(after.velocity_radps[2], 0.0, 0.0);
 }
 
-static void centred_rates_have_no_lag(void **state)
+TEST(centred_rates_have_no_lag)
 {
-    (void)state;
     enum { N = 400 };
     double           t[N], q[DIG_JOINTS * N];
     struct dig_rates rates[N];
@@ -102,15 +98,4 @@ static void centred_rates_have_no_lag(void **state)
             assert_close(rates[i].acceleration_radps2[j], -1.2 * sin(2.0 * t[i] + j), 1.2 * 0.004);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(even_acceleration_is_told_exactly_at_the_windows_end),
-        cmocka_unit_test(its_sigma_is_what_noise_does),
-        cmocka_unit_test(too_few_angles_or_a_gap_count_as_still),
-        cmocka_unit_test(centred_rates_have_no_lag),
-    };
-    return cmocka_run_group_tests_name("rates", tests, NULL, NULL);
 }

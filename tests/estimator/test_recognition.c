@@ -140,9 +140,9 @@ static double right(const struct dug_matrix *const m, const enum dug_truth truth
 static const enum dug_truth judged[] = { DUG_AIR, DUG_PENETRATION, DUG_DRAG, DUG_CURL, DUG_LIFT };
 enum { JUDGED = sizeof judged / sizeof judged[0] };
 
-static void what_the_bucket_does_is_told_however_it_is_dug(void **state)
+TEST(what_the_bucket_does_is_told_however_it_is_dug)
 {
-    const struct digs *const digs = *state;
+    const struct digs *const digs = *fixture;
     print_message("%% right         air  penetr.   drag    curl    lift\n");
     for (size_t w = 0; w < WAYS; w++) {
         const struct dug_matrix *const m = &digs->result[w].matrix;
@@ -159,9 +159,9 @@ static void what_the_bucket_does_is_told_however_it_is_dug(void **state)
     }
 }
 
-static void what_the_bucket_does_is_told_away_from_borders(void **state)
+TEST(what_the_bucket_does_is_told_away_from_borders)
 {
-    const struct digs *const digs = *state;
+    const struct digs *const digs = *fixture;
     static struct dug_matrix all;
     for (size_t w = 0; w < WAYS; w++) {
         dug_add(&all, &digs->result[w].matrix);
@@ -173,9 +173,9 @@ static void what_the_bucket_does_is_told_away_from_borders(void **state)
 }
 
 // Never another than it was; "none" where it can be two (simpleB and actual begin alike) or none.
-static void which_trajectory_is_dug_is_told_or_left_open(void **state)
+TEST(which_trajectory_is_dug_is_told_or_left_open)
 {
-    const struct digs *const digs                     = *state;
+    const struct digs *const digs                     = *fixture;
     static const char *const names[MADE_TRAJECTORIES] = { "simpleA", "simpleB", "actual" };
     print_message("%-14s %-9s  simpleA  simpleB  actual  none  to the end\n", "", "");
     for (size_t w = 0; w < WAYS; w++) {
@@ -193,9 +193,9 @@ static void which_trajectory_is_dug_is_told_or_left_open(void **state)
     }
 }
 
-static void what_is_given_up_is_never_told_as_dug_to_the_end(void **state)
+TEST(what_is_given_up_is_never_told_as_dug_to_the_end)
 {
-    const struct digs *const digs = *state;
+    const struct digs *const digs = *fixture;
     for (size_t w = 0; w < WAYS; w++) {
         const struct result *const r = &digs->result[w];
         for (int t = 0; t < MADE_TRAJECTORIES; t++) {
@@ -209,9 +209,9 @@ static void what_is_given_up_is_never_told_as_dug_to_the_end(void **state)
 
 // Light gravel is not felt to the end of every dig, which is then told neither way, nor is what is
 // given up while it can be two.
-static void how_a_dig_ended_is_told_or_left_open(void **state)
+TEST(how_a_dig_ended_is_told_or_left_open)
 {
-    const struct digs *const digs                     = *state;
+    const struct digs *const digs                     = *fixture;
     static const char *const names[MADE_TRAJECTORIES] = { "simpleA", "simpleB", "actual" };
     print_message("%-14s %-9s  not told  whole  aborted\n", "", "");
     for (size_t w = 0; w < WAYS; w++) {
@@ -231,14 +231,4 @@ static void how_a_dig_ended_is_told_or_left_open(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_the_bucket_does_is_told_however_it_is_dug),
-        cmocka_unit_test(what_the_bucket_does_is_told_away_from_borders),
-        cmocka_unit_test(which_trajectory_is_dug_is_told_or_left_open),
-        cmocka_unit_test(what_is_given_up_is_never_told_as_dug_to_the_end),
-        cmocka_unit_test(how_a_dig_ended_is_told_or_left_open),
-    };
-    return cmocka_run_group_tests_name("recognition", tests, dig_all, NULL);
-}
+TESTS_WITH(dig_all, NULL)

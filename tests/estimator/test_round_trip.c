@@ -143,9 +143,8 @@ static bool digs(const struct dig_rig_track *const track, const size_t row)
     return hypot(track->row[row].soil.FX_N, track->row[row].soil.FZ_N) > 0.0;
 }
 
-static void without_sensors_the_recording_comes_back_within_a_thousandth(void **state)
+TEST(without_sensors_the_recording_comes_back_within_a_thousandth)
 {
-    (void)state;
     for (size_t r = 0; r < RUNS; r++) {
         struct tally tally[PARTS] = { { 0 } };
         int          rows         = 0;
@@ -173,9 +172,8 @@ static void without_sensors_the_recording_comes_back_within_a_thousandth(void **
 
 // Noise and steps of the machine's sensors. Its geometry is the file's to the last digit here, so
 // sigma is held without what tolerances of the geometry add.
-static void with_sensors_one_sigma_covers_two_thirds_and_is_not_too_large(void **state)
+TEST(with_sensors_one_sigma_covers_two_thirds_and_is_not_too_large)
 {
-    (void)state;
     for (size_t d = 0; d < RUNS * KINDS; d++) {
         const struct run *const run  = &runs[d / KINDS];
         const char *const       kind = kinds[d % KINDS];
@@ -245,9 +243,8 @@ static double recorded_Nm(const struct dig_recording *const r, const double prog
 }
 
 // Everything on: inertia, noise, steps of the bus, blended corners, air before and after.
-static void a_whole_run_gives_the_recorded_curves_within_their_sigma(void **state)
+TEST(a_whole_run_gives_the_recorded_curves_within_their_sigma)
 {
-    (void)state;
     const struct made_options   options = { .relative_sd = 0.1, .packings = 3 };
     struct dig_curve_set *const set     = made_table(&options);
     for (int g = 0; g < GRAVELS; g++) {
@@ -303,14 +300,4 @@ static void a_whole_run_gives_the_recorded_curves_within_their_sigma(void **stat
         dig_rig_track_finish(&track);
     }
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_sensors_the_recording_comes_back_within_a_thousandth),
-        cmocka_unit_test(with_sensors_one_sigma_covers_two_thirds_and_is_not_too_large),
-        cmocka_unit_test(a_whole_run_gives_the_recorded_curves_within_their_sigma),
-    };
-    return cmocka_run_group_tests_name("round_trip", tests, NULL, NULL);
 }

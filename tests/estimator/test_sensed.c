@@ -44,9 +44,8 @@ static struct dig_sample resting(void)
 }
 
 // The machine leans by a pitch: gravity is plumb in the world, all else is told in its own frame.
-static void the_load_that_virtual_work_holds_is_found_again(void **state)
+TEST(the_load_that_virtual_work_holds_is_found_again)
 {
-    (void)state;
     uint64_t seed = 5;
     for (int trial = 0; trial < 300; trial++) {
         struct dig_machine machine = shipped();
@@ -135,9 +134,8 @@ static int64_t row_ns(const struct run *const run, const size_t row)
     return (int64_t)(1e9 * run->track.step_s * (double)row) + 1;
 }
 
-static void without_noise_and_motion_the_recording_comes_back(void **state)
+TEST(without_noise_and_motion_the_recording_comes_back)
 {
-    (void)state;
     const struct dig_sensed_motion still = { .turn_radps = 0.0 };
     struct run                     run   = start(true);
     double                         most  = 0.0;
@@ -157,9 +155,8 @@ static void without_noise_and_motion_the_recording_comes_back(void **state)
 }
 
 // Noise, steps and the motion's inertia, taken off as the tick does it.
-static void one_sigma_covers_two_thirds_of_each_part(void **state)
+TEST(one_sigma_covers_two_thirds_of_each_part)
 {
-    (void)state;
     static const char *const name[3]  = { "My", "Fx", "Fz" };
     struct run               run      = start(false);
     double                   in[3]    = { 0.0 };
@@ -202,9 +199,8 @@ static void one_sigma_covers_two_thirds_of_each_part(void **state)
     finish(&run);
 }
 
-static void what_does_not_average_down_is_the_rounding_that_stands(void **state)
+TEST(what_does_not_average_down_is_the_rounding_that_stands)
 {
-    (void)state;
     const struct dig_sensed_motion still   = { .turn_radps = 0.0 };
     struct dig_machine             machine = shipped();
     const struct dig_sample        sample  = resting();
@@ -218,9 +214,8 @@ static void what_does_not_average_down_is_the_rounding_that_stands(void **state)
     assert_close(bare.sigma_Fz_N, machine.sensor.step_N / sqrt(12.0), 1e-9);
 }
 
-static void beyond_its_range_the_sensor_says_nothing(void **state)
+TEST(beyond_its_range_the_sensor_says_nothing)
 {
-    (void)state;
     const struct dig_machine       machine = shipped();
     const struct dig_sensed_motion still   = { .turn_radps = 0.0 };
     const struct {
@@ -245,9 +240,8 @@ static void beyond_its_range_the_sensor_says_nothing(void **state)
     }
 }
 
-static void a_sample_that_lacks_anything_is_refused_untouched(void **state)
+TEST(a_sample_that_lacks_anything_is_refused_untouched)
 {
-    (void)state;
     const struct dig_machine       machine = shipped();
     const struct dig_sensed_motion still   = { .turn_radps = 0.0 };
     struct dig_wrench              w;
@@ -271,9 +265,8 @@ static void a_sample_that_lacks_anything_is_refused_untouched(void **state)
 }
 
 // The estimator on the rig: both digs are found, and what it observes is what was recorded.
-static void a_whole_run_gives_both_digs(void **state)
+TEST(a_whole_run_gives_both_digs)
 {
-    (void)state;
     const struct made_options           options   = { .relative_sd = 0.1, .packings = 3 };
     struct dig_curve_set *const         set       = made_table(&options);
     struct run                          run       = start(false);
@@ -307,18 +300,4 @@ static void a_whole_run_gives_both_digs(void **state)
     free(estimator);
     finish(&run);
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_load_that_virtual_work_holds_is_found_again),
-        cmocka_unit_test(without_noise_and_motion_the_recording_comes_back),
-        cmocka_unit_test(one_sigma_covers_two_thirds_of_each_part),
-        cmocka_unit_test(what_does_not_average_down_is_the_rounding_that_stands),
-        cmocka_unit_test(beyond_its_range_the_sensor_says_nothing),
-        cmocka_unit_test(a_sample_that_lacks_anything_is_refused_untouched),
-        cmocka_unit_test(a_whole_run_gives_both_digs),
-    };
-    return cmocka_run_group_tests_name("sensed", tests, NULL, NULL);
 }

@@ -8,9 +8,8 @@
 
 // The transform of docs/numerics.md by hand: boom 30 deg, arm -90 deg against it, bucket -30 deg
 // against the arm, on links of 5.65, 2.89 and 0.9 m.
-static void a_pose_worked_by_hand_is_placed_there(void **state)
+TEST(a_pose_worked_by_hand_is_placed_there)
 {
-    (void)state;
     const struct dig_machine machine     = model_machine();
     const double             joint_rad[] = { 30 * DIG_RAD_PER_DEG, -90 * DIG_RAD_PER_DEG,
                                              -30 * DIG_RAD_PER_DEG };
@@ -30,9 +29,8 @@ static void a_pose_worked_by_hand_is_placed_there(void **state)
 }
 
 // Weight does work along every joint: its moment is the slope of potential energy.
-static void weights_moment_is_the_slope_of_potential_energy(void **state)
+TEST(weights_moment_is_the_slope_of_potential_energy)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     uint64_t                 seed    = 3;
     for (int trial = 0; trial < 200; trial++) {
@@ -62,13 +60,4 @@ static void weights_moment_is_the_slope_of_potential_energy(void **state)
             assert_close(moment_Nm[j], -(height_J[1] - height_J[0]) / 2e-5, 1e-3);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pose_worked_by_hand_is_placed_there),
-        cmocka_unit_test(weights_moment_is_the_slope_of_potential_energy),
-    };
-    return cmocka_run_group_tests_name("statics", tests, NULL, NULL);
 }

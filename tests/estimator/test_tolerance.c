@@ -86,22 +86,19 @@ static void spread_is_sigma(const struct dig_tolerance *const tolerance)
     }
 }
 
-static void machines_with_other_pins_spread_by_sigma(void **state)
+TEST(machines_with_other_pins_spread_by_sigma)
 {
-    (void)state;
     spread_is_sigma(&(struct dig_tolerance){ .pin_m = 1e-3 });
 }
 
-static void machines_with_other_masses_and_centres_spread_by_sigma(void **state)
+TEST(machines_with_other_masses_and_centres_spread_by_sigma)
 {
-    (void)state;
     spread_is_sigma(&(struct dig_tolerance){ .mass_share = 0.05 });
     spread_is_sigma(&(struct dig_tolerance){ .com_share = 0.02 });
 }
 
-static void rigs_with_other_buckets_and_places_spread_by_sigma(void **state)
+TEST(rigs_with_other_buckets_and_places_spread_by_sigma)
 {
-    (void)state;
     struct dig_machine file;
     struct dig_error   error = { "" };
     if (dig_machine_read("config/machines/rig_sensor.yaml", &file, &error) != DIG_OK) {
@@ -135,9 +132,8 @@ static void rigs_with_other_buckets_and_places_spread_by_sigma(void **state)
     assert_close(w.geometry_sigma_Fz_N / sqrt(sum2[2] / DRAWS), 1.0, within);
 }
 
-static void a_machine_that_is_its_file_has_none(void **state)
+TEST(a_machine_that_is_its_file_has_none)
 {
-    (void)state;
     const struct dig_machine file   = model_machine();
     const struct dig_sample  sample = model_sample(&file, poses[0], 0.1, &loads[0], 1e6, 1);
     struct dig_wrench        w;
@@ -147,9 +143,8 @@ static void a_machine_that_is_its_file_has_none(void **state)
 }
 
 // What scatters from sample to sample is what the matcher weighs; a tolerance is not in it.
-static void tolerances_leave_the_noise_and_what_is_not_told_alone(void **state)
+TEST(tolerances_leave_the_noise_and_what_is_not_told_alone)
 {
-    (void)state;
     struct dig_machine exact              = model_machine();
     exact.pressure_step_Pa                = 2e5;
     exact.angle_sigma_rad                 = 2e-4;
@@ -167,16 +162,4 @@ static void tolerances_leave_the_noise_and_what_is_not_told_alone(void **state)
     assert_true(tolerant.geometry_sigma_My_Nm > 0.0);
     assert_false(tolerant.force_valid);
     assert_close(tolerant.geometry_sigma_Fx_N + tolerant.geometry_sigma_Fz_N, 0.0, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(machines_with_other_pins_spread_by_sigma),
-        cmocka_unit_test(machines_with_other_masses_and_centres_spread_by_sigma),
-        cmocka_unit_test(rigs_with_other_buckets_and_places_spread_by_sigma),
-        cmocka_unit_test(a_machine_that_is_its_file_has_none),
-        cmocka_unit_test(tolerances_leave_the_noise_and_what_is_not_told_alone),
-    };
-    return cmocka_run_group_tests_name("tolerance", tests, NULL, NULL);
 }

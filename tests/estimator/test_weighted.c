@@ -52,9 +52,8 @@ static struct dig_covariance *learnt(uint64_t *const seed)
     return c;
 }
 
-static void it_is_the_formula_written_out(void **state)
+TEST(it_is_the_formula_written_out)
 {
-    (void)state;
     struct dig_curve_set *const set                       = made_table(&options);
     uint64_t                    seed                      = 17;
     int                         found                     = 0;
@@ -94,9 +93,8 @@ static void it_is_the_formula_written_out(void **state)
 }
 
 // Moments that are alike, pushes that are not: the moment alone cannot tell two entries apart.
-static void what_the_forces_tell_counts(void **state)
+TEST(what_the_forces_tell_counts)
 {
-    (void)state;
     struct dig_curve_set *const set  = made_table(&options);
     uint64_t                    seed = 3;
     const size_t                one = 5, other = 34; // looked at before the others
@@ -129,9 +127,8 @@ static void what_the_forces_tell_counts(void **state)
 
 // An entry that is known from one packing alone, and nearly as near: were its own D taken, it would
 // be nearer, in what digs may be off it.
-static void who_is_known_worst_is_not_the_nearest_to_all(void **state)
+TEST(who_is_known_worst_is_not_the_nearest_to_all)
 {
-    (void)state;
     struct dig_curve_set *const set = made_table(&options);
     enum { WORST = 20, OWN = 31 };
     for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
@@ -160,9 +157,8 @@ static void who_is_known_worst_is_not_the_nearest_to_all(void **state)
     made_table_destroy(set);
 }
 
-static void where_nothing_can_be_compared_no_entry_is_told(void **state)
+TEST(where_nothing_can_be_compared_no_entry_is_told)
 {
-    (void)state;
     struct dig_curve_set *const set   = made_table(&options);
     uint64_t                    seed  = 4;
     struct dig_match            match = { .valid = true };
@@ -174,15 +170,4 @@ static void where_nothing_can_be_compared_no_entry_is_told(void **state)
     assert_true(isnan(match.weighted_distance));
 
     made_table_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_the_formula_written_out),
-        cmocka_unit_test(what_the_forces_tell_counts),
-        cmocka_unit_test(who_is_known_worst_is_not_the_nearest_to_all),
-        cmocka_unit_test(where_nothing_can_be_compared_no_entry_is_told),
-    };
-    return cmocka_run_group_tests_name("weighted", tests, NULL, NULL);
 }

@@ -37,9 +37,8 @@ static struct dig_wrench solve(const struct dig_machine *const machine,
     return wrench;
 }
 
-static void the_load_that_virtual_work_holds_is_found_again(void **state)
+TEST(the_load_that_virtual_work_holds_is_found_again)
 {
-    (void)state;
     const struct dig_machine machine = model_machine();
     uint64_t                 seed    = 11;
     for (int trial = 0; trial < 300; trial++) {
@@ -59,9 +58,8 @@ static void the_load_that_virtual_work_holds_is_found_again(void **state)
     }
 }
 
-static void a_missing_pitch_counts_as_level(void **state)
+TEST(a_missing_pitch_counts_as_level)
 {
-    (void)state;
     const struct dig_machine machine     = model_machine();
     const double             joint_rad[] = { 0.2, -1.2, -0.7 };
     const struct model_load  load        = { 1e3, 2e3, 1e4 };
@@ -73,9 +71,8 @@ static void a_missing_pitch_counts_as_level(void **state)
 
 // Errors divided by sigma over many digs' poses: as many within one as a normal error has.
 // Quantisation is no noise for one pose; over poses and return pressures it is.
-static void one_sigma_covers_two_thirds_with_the_zx200s_sensors(void **state)
+TEST(one_sigma_covers_two_thirds_with_the_zx200s_sensors)
 {
-    (void)state;
     const struct {
         double pressure_step_Pa, pressure_sigma_Pa, angle_sigma_rad;
     } sensors[] = { { 2e5, 5e4, 2e-4 }, { 2e5, 2e5, 1e-3 }, { 2e5, 0.0, 0.0 }, { 0.0, 1e2, 4e-3 } };
@@ -120,9 +117,8 @@ static void one_sigma_covers_two_thirds_with_the_zx200s_sensors(void **state)
     }
 }
 
-static void sigma_grows_as_the_arm_stretches_and_ends_in_no_force(void **state)
+TEST(sigma_grows_as_the_arm_stretches_and_ends_in_no_force)
 {
-    (void)state;
     struct dig_machine machine = model_machine();
     machine.pressure_step_Pa   = 2e5;
     machine.angle_step_rad     = 4e-4;
@@ -145,9 +141,8 @@ static void sigma_grows_as_the_arm_stretches_and_ends_in_no_force(void **state)
     assert_false(solve(&machine, &straight).force_valid);
 }
 
-static void relief_stop_and_toggle_clear_what_they_spoil(void **state)
+TEST(relief_stop_and_toggle_clear_what_they_spoil)
 {
-    (void)state;
     const struct dig_machine machine     = model_machine();
     const double             joint_rad[] = { 0.2, -1.2, -0.7 };
     const struct model_load  load        = { 1e3, 2e3, 1e4 };
@@ -184,9 +179,8 @@ static void relief_stop_and_toggle_clear_what_they_spoil(void **state)
 
 // The moment is the bucket's own balance: boom and arm hold their links up, whatever they push
 // with.
-static void the_buckets_pressures_alone_tell_the_moment_and_no_force(void **state)
+TEST(the_buckets_pressures_alone_tell_the_moment_and_no_force)
 {
-    (void)state;
     struct dig_machine machine = model_machine();
     machine.pressure_step_Pa   = 2e5;
     machine.angle_step_rad     = 4e-4;
@@ -214,9 +208,8 @@ static void the_buckets_pressures_alone_tell_the_moment_and_no_force(void **stat
     }
 }
 
-static void what_is_missing_or_no_number_is_refused_and_writes_nothing(void **state)
+TEST(what_is_missing_or_no_number_is_refused_and_writes_nothing)
 {
-    (void)state;
     const struct dig_machine machine     = model_machine();
     const double             joint_rad[] = { 0.2, -1.2, -0.7 };
     const struct model_load  load        = { 1e3, 2e3, 1e4 };
@@ -243,18 +236,4 @@ static void what_is_missing_or_no_number_is_refused_and_writes_nothing(void **st
     }
     assert_memory_equal(&wrench, &before, sizeof wrench);
     assert_memory_equal(&front, &front_before, sizeof front);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_load_that_virtual_work_holds_is_found_again),
-        cmocka_unit_test(a_missing_pitch_counts_as_level),
-        cmocka_unit_test(one_sigma_covers_two_thirds_with_the_zx200s_sensors),
-        cmocka_unit_test(sigma_grows_as_the_arm_stretches_and_ends_in_no_force),
-        cmocka_unit_test(relief_stop_and_toggle_clear_what_they_spoil),
-        cmocka_unit_test(the_buckets_pressures_alone_tell_the_moment_and_no_force),
-        cmocka_unit_test(what_is_missing_or_no_number_is_refused_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("wrench", tests, NULL, NULL);
 }

@@ -4,9 +4,8 @@
 
 #include "tests/scratch.h"
 
-static void a_bed_is_read_back_bit_by_bit(void **state)
+TEST(a_bed_is_read_back_bit_by_bit)
 {
-    (void)state;
     double x[] = { 0.1, 1.0 / 3 }, y[] = { -0.05, 1e-17 }, z[] = { 0.03, 2.0 / 7 },
            radius[]                      = { 0.00375, 0.003 };
     const struct dig_bed_columns written = { 2, x, y, z, radius, NULL, NULL };
@@ -24,9 +23,8 @@ static void a_bed_is_read_back_bit_by_bit(void **state)
     dig_bed_columns_finish(&read);
 }
 
-static void materials_and_clumps_are_kept(void **state)
+TEST(materials_and_clumps_are_kept)
 {
-    (void)state;
     double   x[3] = { 0.1, 0.2, 0.3 }, radius[3] = { 1.0, 1.0, 1.0 };
     uint8_t  material[] = { 0, 255, 3 };
     uint32_t clump[]    = { 1, UINT32_MAX, 7 };
@@ -50,18 +48,16 @@ static void materials_and_clumps_are_kept(void **state)
     }
 }
 
-static void the_bed_of_the_formats_loads(void **state)
+TEST(the_bed_of_the_formats_loads)
 {
-    (void)state;
     struct dig_bed_columns read = { 0 };
     assert_int_equal(dig_bed_read("tests/data/formats/bed.csv", &read, NULL), DIG_OK);
     assert_int_equal(read.grains, 3);
     dig_bed_columns_finish(&read);
 }
 
-static void defects_are_told_and_nothing_is_written(void **state)
+TEST(defects_are_told_and_nothing_is_written)
 {
-    (void)state;
     static const char *const bad[][2] = {
         { "x_m,y_m,z_m\n0,0,0\n", ":1: column radius_m: missing" },
         { "x_m,y_m,z_m,radius_m\n0,0,0,0\n", ":2: column radius_m: 0, expected > 0" },
@@ -89,13 +85,4 @@ static void defects_are_told_and_nothing_is_written(void **state)
     assert_int_equal(read.grains, 42);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_bed_is_read_back_bit_by_bit),
-        cmocka_unit_test(materials_and_clumps_are_kept),
-        cmocka_unit_test(the_bed_of_the_formats_loads),
-        cmocka_unit_test(defects_are_told_and_nothing_is_written),
-    };
-    return cmocka_run_group_tests_name("bed_csv", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

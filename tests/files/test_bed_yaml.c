@@ -7,9 +7,8 @@
 
 #define EXAMPLE "tests/data/formats/scene_bed.yaml"
 
-static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     const struct dig_scene           s   = yaml_scene(EXAMPLE);
     const struct dig_bed_plan *const bed = &s.bed;
     assert_int_equal(s.laws.normal, DIG_NORMAL_HERTZ);
@@ -52,18 +51,16 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 }
 
 // The tables that exist name the rig by this hash, made before beds could hold anything else.
-static void a_plain_scene_keeps_its_identity(void **state)
+TEST(a_plain_scene_keeps_its_identity)
 {
-    (void)state;
     char                   hex[65];
     const struct dig_scene rig = yaml_scene("config/scenes/rig.yaml");
     dig_scene_hash(&rig, hex);
     assert_string_equal(hex, "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
 }
 
-static void whatever_changes_the_bed_changes_the_identity(void **state)
+TEST(whatever_changes_the_bed_changes_the_identity)
 {
-    (void)state;
     size_t      size = 0;
     char *const text = scratch_read(EXAMPLE, &size);
     char        before[65], after[65];
@@ -105,9 +102,8 @@ static void whatever_changes_the_bed_changes_the_identity(void **state)
     free(text);
 }
 
-static void what_cannot_be_is_refused_with_line_and_key(void **state)
+TEST(what_cannot_be_is_refused_with_line_and_key)
 {
-    (void)state;
     static const char *const bad[][3] = {
         { "normal: hertz", "normal: herz", "bad.yaml:31: laws.normal" },
         { "cohesion_Jpm3: 2.0e+4", "cohesion_Jpm3: -1", "bad.yaml:33: laws.cohesion_Jpm3: -1" },
@@ -142,16 +138,14 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
     yaml_refuses_each(EXAMPLE, sizeof bad / sizeof bad[0], bad, yaml_scene_refused);
 }
 
-static void no_key_is_overlooked(void **state)
+TEST(no_key_is_overlooked)
 {
-    (void)state;
     yaml_knows_every_key(EXAMPLE, yaml_scene_refused);
 }
 
 // 15.87 % of a normal distribution lie below -1 sigma and 30.85 % below -1/2 sigma, as tables say.
-static void a_log_normal_bed_is_cut_into_classes_of_equal_mass(void **state)
+TEST(a_log_normal_bed_is_cut_into_classes_of_equal_mass)
 {
-    (void)state;
     struct dig_size size[DIG_SIZES_MAX];
     assert_int_equal(dig_log_normal_classes(0.01, 0.4, 3, size), DIG_OK);
     assert_close(size[1].diameter_m, 0.01, 1e-15);
@@ -167,9 +161,8 @@ static void a_log_normal_bed_is_cut_into_classes_of_equal_mass(void **state)
     assert_close(size[0].diameter_m, 7.0, 0.0);
 }
 
-static void the_ground_is_straight_between_its_points(void **state)
+TEST(the_ground_is_straight_between_its_points)
 {
-    (void)state;
     struct dig_scene s = yaml_scene(EXAMPLE);
     assert_close(dig_scene_ground_m(&s, 0.25, 0.0), 0.29, 1e-15);
     assert_close(dig_scene_ground_m(&s, -1.0, 0.0), 0.28, 1e-15);
@@ -186,9 +179,8 @@ static void the_ground_is_straight_between_its_points(void **state)
 #define UNEVEN "tests/data/formats/scene_uneven.yaml"
 
 // Two profiles, heights by hand.
-static void the_ground_is_straight_from_profile_to_profile(void **state)
+TEST(the_ground_is_straight_from_profile_to_profile)
 {
-    (void)state;
     struct dig_scene s = yaml_scene(UNEVEN);
     assert_int_equal(s.bed.profiles, 2);
     assert_close(dig_scene_ground_m(&s, 0.5, -0.2), 0.29, 1e-15);
@@ -204,9 +196,8 @@ static void the_ground_is_straight_from_profile_to_profile(void **state)
     assert_close(dig_scene_ground_max_m(&s), 0.35, 1e-15);
 }
 
-static void every_key_of_profiles_is_checked(void **state)
+TEST(every_key_of_profiles_is_checked)
 {
-    (void)state;
     static const char *const bad[][3] = {
         { "y_m: 0.2", "y_m: -0.2", "bed.surfaces[1].y_m: -0.2" },
         { "- [0.5, 0.3]", "- [0, 0.3]", "bed.surfaces[1].surface_m[1]: [0, 0.3]" },
@@ -218,9 +209,8 @@ static void every_key_of_profiles_is_checked(void **state)
     yaml_knows_every_key(UNEVEN, yaml_scene_refused);
 }
 
-static void every_height_is_of_the_scenes_identity(void **state)
+TEST(every_height_is_of_the_scenes_identity)
 {
-    (void)state;
     struct dig_scene s = yaml_scene(UNEVEN);
     char             hex[65];
     char             other[65];
@@ -234,19 +224,4 @@ static void every_height_is_of_the_scenes_identity(void **state)
     assert_string_not_equal(hex, other);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(a_plain_scene_keeps_its_identity),
-        cmocka_unit_test(whatever_changes_the_bed_changes_the_identity),
-        cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
-        cmocka_unit_test(no_key_is_overlooked),
-        cmocka_unit_test(a_log_normal_bed_is_cut_into_classes_of_equal_mass),
-        cmocka_unit_test(the_ground_is_straight_between_its_points),
-        cmocka_unit_test(the_ground_is_straight_from_profile_to_profile),
-        cmocka_unit_test(every_key_of_profiles_is_checked),
-        cmocka_unit_test(every_height_is_of_the_scenes_identity),
-    };
-    return cmocka_run_group_tests_name("bed_yaml", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

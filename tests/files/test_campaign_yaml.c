@@ -4,9 +4,8 @@
 
 #include "tests/scratch.h"
 
-static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     static struct dig_campaign campaign;
     assert_int_equal(dig_campaign_read("tests/data/formats/campaign", &campaign, NULL), DIG_OK);
     assert_string_equal(campaign.scene, "tests/data/formats/campaign/../scene.yaml");
@@ -23,9 +22,8 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
 
 #define ONE "recordings:\n  - {file: a.csv, trajectory: t, role: fit}\n"
 
-static void absolute_paths_stay_and_the_machine_may_be_missing(void **state)
+TEST(absolute_paths_stay_and_the_machine_may_be_missing)
 {
-    (void)state;
     static struct dig_campaign campaign;
     (void)scratch_write("campaign.yaml", "scene: /somewhere/scene.yaml\n" ONE);
     assert_int_equal(dig_campaign_read(scratch_dir, &campaign, NULL), DIG_OK);
@@ -34,9 +32,8 @@ static void absolute_paths_stay_and_the_machine_may_be_missing(void **state)
     assert_string_equal(campaign.recording[0].file, scratch_path("a.csv"));
 }
 
-static void what_a_campaign_cannot_be_is_refused_with_file_line_and_key(void **state)
+TEST(what_a_campaign_cannot_be_is_refused_with_file_line_and_key)
 {
-    (void)state;
     static const struct {
         const char *text, *says;
     } bad[] = {
@@ -83,9 +80,8 @@ static void what_a_campaign_cannot_be_is_refused_with_file_line_and_key(void **s
     }
 }
 
-static void folder_without_a_campaign_is_refused(void **state)
+TEST(folder_without_a_campaign_is_refused)
 {
-    (void)state;
     static struct dig_campaign campaign;
     struct dig_error           error = { "" };
     (void)unlink(scratch_path("campaign.yaml"));
@@ -93,9 +89,8 @@ static void folder_without_a_campaign_is_refused(void **state)
     assert_contains(error.text, "campaign.yaml");
 }
 
-static void path_too_long_is_refused(void **state)
+TEST(path_too_long_is_refused)
 {
-    (void)state;
     static struct dig_campaign campaign;
     struct dig_error           error = { "" };
     char                       deep[601];
@@ -105,23 +100,11 @@ static void path_too_long_is_refused(void **state)
     assert_contains(error.text, "shorter");
 }
 
-static void folder_is_told_from_a_file(void **state)
+TEST(folder_is_told_from_a_file)
 {
-    (void)state;
     assert_true(dig_campaign_is(scratch_dir));
     assert_false(dig_campaign_is(scratch_write("a.csv", "t_s\n")));
     assert_false(dig_campaign_is(scratch_path("nothing")));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(absolute_paths_stay_and_the_machine_may_be_missing),
-        cmocka_unit_test(what_a_campaign_cannot_be_is_refused_with_file_line_and_key),
-        cmocka_unit_test(folder_without_a_campaign_is_refused),
-        cmocka_unit_test(path_too_long_is_refused),
-        cmocka_unit_test(folder_is_told_from_a_file),
-    };
-    return cmocka_run_group_tests_name("campaign YAML", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -12,9 +12,8 @@
 static const struct dig_csv_column columns[] = { { .name = "t_s" },
                                                  { .name = "y", .optional = true } };
 
-static void rows_without_end_are_refused_by_their_line(void **state)
+TEST(rows_without_end_are_refused_by_their_line)
 {
-    (void)state;
     enum { ROWS = (1 << 22) + 10 };
     FILE *const file = fopen(scratch_path("long.csv"), "w");
     assert_non_null(file);
@@ -31,9 +30,8 @@ static void rows_without_end_are_refused_by_their_line(void **state)
 }
 
 // A file of holes is as long as it says and takes no room on the disk; an archive brings it along.
-static void a_line_without_end_is_no_header_and_takes_no_memory(void **state)
+TEST(a_line_without_end_is_no_header_and_takes_no_memory)
 {
-    (void)state;
     const char *const path = scratch_write("holes.csv", "# a comment");
     assert_int_equal(truncate(path, 512 << 20), 0);
     struct rusage before, after;
@@ -43,9 +41,8 @@ static void a_line_without_end_is_no_header_and_takes_no_memory(void **state)
     assert_true(after.ru_maxrss - before.ru_maxrss < 64 * 1024); // kB
 }
 
-static void the_header_is_found_behind_comments_of_any_length(void **state)
+TEST(the_header_is_found_behind_comments_of_any_length)
 {
-    (void)state;
     enum { LONG = 20000 };
     static char text[LONG + 200] = "#";
     memset(text + 1, 'x', LONG);
@@ -79,9 +76,8 @@ static void *write_again_and_again(void *const context)
     return NULL;
 }
 
-static void a_file_that_changes_while_it_is_read_is_rows_or_a_refusal(void **state)
+TEST(a_file_that_changes_while_it_is_read_is_rows_or_a_refusal)
 {
-    (void)state;
     const char *const path   = scratch_write("moving.csv", "t_s\n1\n");
     struct writer     writer = { .path = path };
     pthread_t         thread;
@@ -103,14 +99,4 @@ static void a_file_that_changes_while_it_is_read_is_rows_or_a_refusal(void **sta
     assert_int_equal(pthread_join(thread, NULL), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(
-            a_line_without_end_is_no_header_and_takes_no_memory), // before memory peaks
-        cmocka_unit_test(rows_without_end_are_refused_by_their_line),
-        cmocka_unit_test(the_header_is_found_behind_comments_of_any_length),
-        cmocka_unit_test(a_file_that_changes_while_it_is_read_is_rows_or_a_refusal),
-    };
-    return cmocka_run_group_tests_name("csv", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

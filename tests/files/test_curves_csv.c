@@ -57,9 +57,8 @@ static struct seen digs_of(const char *const csv, const struct dig_curve_map *co
     return seen;
 }
 
-static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     struct dig_curve_map map;
     assert_int_equal(dig_curve_map_read("tests/data/formats/curve_map.yaml", &map, NULL), DIG_OK);
     assert_string_equal(map.scene, "tests/data/formats/scene.yaml");
@@ -70,9 +69,8 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_close(map.field[DIG_MAP_FX_N].factor, 1.0, 0.0);
 }
 
-static void the_example_of_curves_is_two_digs(void **state)
+TEST(the_example_of_curves_is_two_digs)
 {
-    (void)state;
     struct dig_curve_map             map;
     struct seen                      seen    = { .digs = 0 };
     struct dig_error                 error   = { "" };
@@ -90,9 +88,8 @@ static void the_example_of_curves_is_two_digs(void **state)
     }
 }
 
-static void columns_are_found_scaled_and_cut_into_digs(void **state)
+TEST(columns_are_found_scaled_and_cut_into_digs)
 {
-    (void)state;
     const struct dig_curve_map map  = map_of(HEAD "  My_Nm: {column: torque, factor: -1}\n");
     const struct seen          seen = digs_of("# from a rig\nnotes,dig,mu,rho,ms,torque,X,Z\r\n"
                                                        "a,pull,.3,2.5,0,-1,10,-20\n"
@@ -117,9 +114,8 @@ static void columns_are_found_scaled_and_cut_into_digs(void **state)
     assert_true(isnan(seen.first[0].carried_kg));
 }
 
-static void a_dig_may_be_deeper_or_turned(void **state)
+TEST(a_dig_may_be_deeper_or_turned)
 {
-    (void)state;
     const struct dig_curve_map map = map_of(
         HEAD
         "  My_Nm: {column: torque}\n  depth: {column: deep, factor: .5}\n  attack_deg: {column: "
@@ -140,9 +136,8 @@ static void a_dig_may_be_deeper_or_turned(void **state)
     assert_close(seen.dig[2].approach.attack_rad, -0.5235987755983, 1e-12);
 }
 
-static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
+TEST(what_does_not_fit_the_map_is_refused_by_its_line)
 {
-    (void)state;
     const struct dig_curve_map map =
         map_of(HEAD "  My_Nm: {column: torque}\n  packing: {column: rep}\n");
     static const char *const bad[][2] = {
@@ -171,9 +166,8 @@ static void what_does_not_fit_the_map_is_refused_by_its_line(void **state)
     }
 }
 
-static void a_depth_or_attack_that_cannot_be_is_refused_by_its_line(void **state)
+TEST(a_depth_or_attack_that_cannot_be_is_refused_by_its_line)
 {
-    (void)state;
     const struct dig_curve_map map =
         map_of(HEAD "  My_Nm: {value: 1}\n  depth: {column: deep}\n  attack_deg: {column: turn}\n");
     static const char *const bad[][2] = {
@@ -198,9 +192,8 @@ static void a_depth_or_attack_that_cannot_be_is_refused_by_its_line(void **state
     }
 }
 
-static void what_is_no_map_is_refused_by_its_key(void **state)
+TEST(what_is_no_map_is_refused_by_its_key)
 {
-    (void)state;
     static const char *const bad[][2] = {
         { HEAD, "columns.My_Nm: missing" },
         { HEAD "  My_Nm: {factor: 2}\n",
@@ -217,16 +210,4 @@ static void what_is_no_map_is_refused_by_its_key(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(the_example_of_curves_is_two_digs),
-        cmocka_unit_test(columns_are_found_scaled_and_cut_into_digs),
-        cmocka_unit_test(a_dig_may_be_deeper_or_turned),
-        cmocka_unit_test(a_depth_or_attack_that_cannot_be_is_refused_by_its_line),
-        cmocka_unit_test(what_does_not_fit_the_map_is_refused_by_its_line),
-        cmocka_unit_test(what_is_no_map_is_refused_by_its_key),
-    };
-    return cmocka_run_group_tests_name("curves_csv", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

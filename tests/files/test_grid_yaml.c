@@ -10,9 +10,8 @@
 
 #define POINT "points:\n  - {friction: .3, rolling: 0, density_kgpm3: 2500, packings: 1}\n"
 
-static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     struct dig_grid grid;
     assert_int_equal(dig_grid_read("tests/data/formats/grid.yaml", &grid, NULL), DIG_OK);
     assert_int_equal(grid.count[DIG_AXIS_FRICTION], 2);
@@ -26,9 +25,8 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_string_equal(grid.trajectory[0], "scrape");
 }
 
-static void points_and_effects_load_as_they_are_written(void **state)
+TEST(points_and_effects_load_as_they_are_written)
 {
-    (void)state;
     struct dig_grid grid;
     assert_int_equal(dig_grid_read("tests/data/formats/grid_effects.yaml", &grid, NULL), DIG_OK);
     assert_int_equal(grid.count[DIG_AXIS_FRICTION], 0);
@@ -43,9 +41,8 @@ static void points_and_effects_load_as_they_are_written(void **state)
     assert_int_equal(grid.trajectories, 0);
 }
 
-static void depths_and_attacks_load_as_a_cross_or_a_product(void **state)
+TEST(depths_and_attacks_load_as_a_cross_or_a_product)
 {
-    (void)state;
     struct dig_grid grid;
     assert_int_equal(dig_grid_read("tests/data/formats/grid_approaches.yaml", &grid, NULL), DIG_OK);
     static const double cross[][2]   = { { 0.8, 0.0 }, { 1.0, 5.0 }, { 1.2, 0.0 } };
@@ -75,9 +72,8 @@ static void depths_and_attacks_load_as_a_cross_or_a_product(void **state)
     assert_int_equal(grid.varied_packings, 0);
 }
 
-static void every_grid_that_is_shipped_fits_the_rig(void **state)
+TEST(every_grid_that_is_shipped_fits_the_rig)
 {
-    (void)state;
     struct dig_scene rig;
     assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &rig, NULL), DIG_OK);
     DIR *const dir = opendir("config/grids");
@@ -99,9 +95,8 @@ static void every_grid_that_is_shipped_fits_the_rig(void **state)
     (void)closedir(dir);
 }
 
-static void trajectories_are_found_in_the_scene_or_refused(void **state)
+TEST(trajectories_are_found_in_the_scene_or_refused)
 {
-    (void)state;
     struct dig_scene rig;
     struct dig_grid  grid;
     struct dig_error error = { "" };
@@ -133,9 +128,8 @@ static void trajectories_are_found_in_the_scene_or_refused(void **state)
     assert_int_equal(trajectory[2], 2);
 }
 
-static void what_is_no_grid_is_refused_with_line_and_key(void **state)
+TEST(what_is_no_grid_is_refused_with_line_and_key)
 {
-    (void)state;
     static const char *const bad[][2] = {
         { "friction: [.5, .3]\nrolling: [0]\ndensity_kgpm3: [2500]\npackings: 1\n",
           ":1: friction[1]: 0.3 after 0.5, expected ascending" },
@@ -203,15 +197,4 @@ static void what_is_no_grid_is_refused_with_line_and_key(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(points_and_effects_load_as_they_are_written),
-        cmocka_unit_test(depths_and_attacks_load_as_a_cross_or_a_product),
-        cmocka_unit_test(every_grid_that_is_shipped_fits_the_rig),
-        cmocka_unit_test(trajectories_are_found_in_the_scene_or_refused),
-        cmocka_unit_test(what_is_no_grid_is_refused_with_line_and_key),
-    };
-    return cmocka_run_group_tests_name("grid_yaml", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

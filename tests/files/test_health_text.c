@@ -8,9 +8,8 @@
 #include <string.h>
 
 // Each field of trouble, filled with a number of its own.
-static void each_counter_is_the_field_it_is_named_after(void **state)
+TEST(each_counter_is_the_field_it_is_named_after)
 {
-    (void)state;
     const digsight_health_t  h      = { .overruns              = 1,
                                         .dropped_malformed     = 2,
                                         .dropped_nan           = 3,
@@ -58,9 +57,8 @@ static void each_counter_is_the_field_it_is_named_after(void **state)
     }
 }
 
-static void each_counter_and_state_says_what_is_wrong_and_what_to_do(void **state)
+TEST(each_counter_and_state_says_what_is_wrong_and_what_to_do)
 {
-    (void)state;
     for (size_t i = 0; i < DIG_HEALTH_COUNTERS; i++) {
         const struct dig_health_text *const text = dig_health_counter_text(i);
         assert_in_range(strlen(text->what), 10, 70);
@@ -74,13 +72,4 @@ static void each_counter_and_state_says_what_is_wrong_and_what_to_do(void **stat
     }
     assert_null(dig_health_state_text(DIG_STATE_RUNNING));
     assert_null(dig_health_state_text("anything"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_counter_is_the_field_it_is_named_after),
-        cmocka_unit_test(each_counter_and_state_says_what_is_wrong_and_what_to_do),
-    };
-    return cmocka_run_group_tests_name("health_text", tests, NULL, NULL);
 }

@@ -52,9 +52,8 @@ static struct dig_identity example(void)
     return id;
 }
 
-static void what_was_written_is_read_back(void **state)
+TEST(what_was_written_is_read_back)
 {
-    (void)state;
     const struct dig_identity id   = example();
     const char *const         path = scratch_path("id.json");
     FILE *const               file = fopen(path, "w");
@@ -106,9 +105,8 @@ static void what_was_written_is_read_back(void **state)
 }
 
 // What it was matched at is written where it is another; neither, where it was not told.
-static void a_depth_is_written_once_and_only_where_it_was_told(void **state)
+TEST(a_depth_is_written_once_and_only_where_it_was_told)
 {
-    (void)state;
     struct dig_identity id = example();
     static const struct {
         struct dig_approach made, matched;
@@ -143,9 +141,8 @@ static void a_depth_is_written_once_and_only_where_it_was_told(void **state)
 }
 
 // Of 0.1.0: without a word of forces.
-static void what_was_written_before_forces_is_read(void **state)
+TEST(what_was_written_before_forces_is_read)
 {
-    (void)state;
     struct dig_identity read  = { .forces = true };
     struct dig_error    error = { "" };
     if (dig_identity_read("tests/data/formats/identity.json", &read, &error) != DIG_OK) {
@@ -155,9 +152,8 @@ static void what_was_written_before_forces_is_read(void **state)
 }
 
 // Each defect names the file and the key, and leaves what was there.
-static void defects_are_refused_by_name(void **state)
+TEST(defects_are_refused_by_name)
 {
-    (void)state;
     static char               good[65536];
     const struct dig_identity id   = example();
     FILE *const               file = tmpfile();
@@ -215,13 +211,4 @@ static void defects_are_refused_by_name(void **state)
     assert_int_equal(untouched.digs, 42);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_written_is_read_back),
-        cmocka_unit_test(a_depth_is_written_once_and_only_where_it_was_told),
-        cmocka_unit_test(what_was_written_before_forces_is_read),
-        cmocka_unit_test(defects_are_refused_by_name),
-    };
-    return cmocka_run_group_tests_name("identity_json", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -13,9 +13,8 @@ static const char good[] = "job: digtable-0123456789ab\n"
                            "beds: 12\n"
                            "trajectories: 3\n";
 
-static void what_is_written_is_read_back(void **state)
+TEST(what_is_written_is_read_back)
 {
-    (void)state;
     struct dig_job_plan plan;
     struct dig_job_plan back;
     struct dig_error    error = { "" };
@@ -32,9 +31,8 @@ static void what_is_written_is_read_back(void **state)
     assert_false(scratch_exists("back.yaml.part"));
 }
 
-static void the_example_is_read(void **state)
+TEST(the_example_is_read)
 {
-    (void)state;
     struct dig_job_plan plan;
     struct dig_error    error = { "" };
     if (dig_job_plan_read("tests/data/formats/plan.yaml", &plan, &error) != DIG_OK) {
@@ -44,9 +42,8 @@ static void the_example_is_read(void **state)
 }
 
 // 12 beds in 5 shards: 3, 3, 2, 2, 2, as tables/queue.h deals them out.
-static void the_digs_of_all_shards_are_those_of_the_plan(void **state)
+TEST(the_digs_of_all_shards_are_those_of_the_plan)
 {
-    (void)state;
     const struct dig_job_plan plan     = { .tasks = 5, .beds = 12, .trajectories = 3 };
     static const size_t       wanted[] = { 9, 9, 6, 6, 6 };
     for (size_t task = 1; task <= plan.tasks; task++) {
@@ -54,9 +51,8 @@ static void the_digs_of_all_shards_are_those_of_the_plan(void **state)
     }
 }
 
-static void what_cannot_be_is_refused_by_key(void **state)
+TEST(what_cannot_be_is_refused_by_key)
 {
-    (void)state;
     static const struct {
         const char *line, *instead, *says;
     } cases[] = {
@@ -87,13 +83,4 @@ static void what_cannot_be_is_refused_by_key(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_is_read_back),
-        cmocka_unit_test(the_example_is_read),
-        cmocka_unit_test(the_digs_of_all_shards_are_those_of_the_plan),
-        cmocka_unit_test(what_cannot_be_is_refused_by_key),
-    };
-    return cmocka_run_group_tests_name("job_plan", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

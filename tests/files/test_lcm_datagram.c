@@ -32,9 +32,8 @@ static bool takes(const void *const bytes, const size_t size, struct dig_lcm_eve
     return taken;
 }
 
-static void a_short_message_is_its_channel_and_what_follows(void **state)
+TEST(a_short_message_is_its_channel_and_what_follows)
 {
-    (void)state;
     static const char    whole[] = "LC02\0\0\0\5DIGSIGHT_HEALTH\0data";
     struct dig_lcm_event event;
     size_t               at = 0;
@@ -48,9 +47,8 @@ static void a_short_message_is_its_channel_and_what_follows(void **state)
     }
 }
 
-static void what_has_no_end_or_is_a_part_is_no_message(void **state)
+TEST(what_has_no_end_or_is_a_part_is_no_message)
 {
-    (void)state;
     static char          bytes[60000];
     struct dig_lcm_event event;
     size_t               at = 0;
@@ -66,13 +64,4 @@ static void what_has_no_end_or_is_a_part_is_no_message(void **state)
     assert_false(takes(bytes, sizeof bytes, &event, &at));
     memcpy(bytes, "LC01", 4);
     assert_false(takes(bytes, sizeof bytes, &event, &at));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_short_message_is_its_channel_and_what_follows),
-        cmocka_unit_test(what_has_no_end_or_is_a_part_is_no_message),
-    };
-    return cmocka_run_group_tests_name("lcm_datagram", tests, NULL, NULL);
 }

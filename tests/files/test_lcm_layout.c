@@ -22,9 +22,8 @@ static bool fits(const char *const layout, const uint8_t body[], const size_t si
     return yes;
 }
 
-static void scalars_take_their_bytes_and_no_more(void **state)
+TEST(scalars_take_their_bytes_and_no_more)
 {
-    (void)state;
     const uint8_t body[32] = { 0 };
     assert_true(fits("", body, 0));
     assert_true(fits("814", body, 13));
@@ -33,9 +32,8 @@ static void scalars_take_their_bytes_and_no_more(void **state)
     assert_false(dig_lcm_fits("", body, 7)); // not even a fingerprint
 }
 
-static void arrays_are_as_long_as_the_number_before_them(void **state)
+TEST(arrays_are_as_long_as_the_number_before_them)
 {
-    (void)state;
     uint8_t body[64] = { 0, 0, 0, 2 };
     assert_true(fits("4D", body, 4 + 16));
     assert_true(fits("4DB1", body, 4 + 16 + 2 + 1));
@@ -46,9 +44,8 @@ static void arrays_are_as_long_as_the_number_before_them(void **state)
 }
 
 // What LCM's own decoders would walk over: negative counts, and counts whose bytes overflow an int.
-static void counts_that_cannot_be_are_refused(void **state)
+TEST(counts_that_cannot_be_are_refused)
 {
-    (void)state;
     uint8_t       body[64]    = { 0 };
     const uint8_t counts[][4] = { { 0xff, 0xff, 0xff, 0xff },
                                   { 0x80, 0x00, 0x00, 0x00 },
@@ -63,9 +60,8 @@ static void counts_that_cannot_be_are_refused(void **state)
     }
 }
 
-static void strings_end_with_the_nul_they_count(void **state)
+TEST(strings_end_with_the_nul_they_count)
 {
-    (void)state;
     const uint8_t two[]     = { 0, 0, 0, 3, 'h', 'i', 0, 0, 0, 0, 1, 0 };
     const uint8_t open[]    = { 0, 0, 0, 2, 'h', 'i' };
     const uint8_t nothing[] = { 0, 0, 0, 0 };
@@ -73,15 +69,4 @@ static void strings_end_with_the_nul_they_count(void **state)
     assert_false(fits("s", two, 6));
     assert_false(fits("s", open, sizeof open));
     assert_false(fits("s", nothing, sizeof nothing));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scalars_take_their_bytes_and_no_more),
-        cmocka_unit_test(arrays_are_as_long_as_the_number_before_them),
-        cmocka_unit_test(counts_that_cannot_be_are_refused),
-        cmocka_unit_test(strings_end_with_the_nul_they_count),
-    };
-    return cmocka_run_group_tests_name("lcm_layout", tests, NULL, NULL);
 }

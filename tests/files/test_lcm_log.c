@@ -68,9 +68,8 @@ static void count_health(void *const context, const int64_t time_us,
 
 // Logged by lcm-logger from a running daemon, cut down to the first messages of each channel: logs
 // of this version stay readable, or this test says that they do not.
-static void the_example_of_the_formats_is_read(void **state)
+TEST(the_example_of_the_formats_is_read)
 {
-    (void)state;
     static const char            path[] = "tests/data/formats/daemon.lcm";
     struct counts                counts = { 0 };
     const struct dig_lcm_reader  reader = { &counts, count_estimate, count_any_match,
@@ -87,9 +86,8 @@ static void the_example_of_the_formats_is_read(void **state)
     dig_machine_recording_finish(&r);
 }
 
-static void samples_become_a_recording_that_begins_at_zero(void **state)
+TEST(samples_become_a_recording_that_begins_at_zero)
 {
-    (void)state;
     lcm_eventlog_t *const log = begin("good.lcm");
     put_sample(log, 5000000000, DIG_SIGNALS);
     put_sample(log, 5010000000, DIG_SIGNALS);
@@ -120,9 +118,8 @@ static void count_match(void *const context, const int64_t time_us, const digsig
     (*count)++;
 }
 
-static void other_messages_are_handed_on_one_by_one(void **state)
+TEST(other_messages_are_handed_on_one_by_one)
 {
-    (void)state;
     char                  trajectory[] = "simpleA";
     lcm_eventlog_t *const log          = begin("match.lcm");
     digsight_match_t      match        = blank_match();
@@ -142,9 +139,8 @@ static void other_messages_are_handed_on_one_by_one(void **state)
 }
 
 // A logger that was killed leaves its last event unfinished: the rest counts.
-static void a_log_cut_off_in_its_last_event_is_read_up_to_there(void **state)
+TEST(a_log_cut_off_in_its_last_event_is_read_up_to_there)
 {
-    (void)state;
     lcm_eventlog_t *const log = begin("whole.lcm");
     for (int64_t i = 0; i < 4; i++) {
         put_sample(log, i, DIG_SIGNALS);
@@ -176,9 +172,8 @@ static void check_refused(const char *const name, const enum dig_status status,
     assert_int_equal(r.rows, 42);
 }
 
-static void defects_are_refused_and_write_nothing(void **state)
+TEST(defects_are_refused_and_write_nothing)
 {
-    (void)state;
     check_refused("none.lcm", DIG_EIO, "none.lcm: No such file");
     (void)scratch_write("text.lcm", "t_s,boom_rad\n");
     assert_false(dig_lcm_log_is(scratch_path("text.lcm")));
@@ -237,9 +232,8 @@ static void defects_are_refused_and_write_nothing(void **state)
 }
 
 // What anybody on the network may have sent.
-static void values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken(void **state)
+TEST(values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken)
 {
-    (void)state;
     double               value[DIG_SIGNALS] = { 0.5, (double)NAN, (double)INFINITY, -0.25 };
     int8_t               valid[DIG_SIGNALS] = { 1, 1, 1, 1 };
     digsight_sample_t    message = { .signals = DIG_SIGNALS, .value = value, .valid = valid };
@@ -271,9 +265,8 @@ static void values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken(vo
 }
 
 // A length from a damaged header must not be believed.
-static void lengths_that_cannot_be_are_refused(void **state)
+TEST(lengths_that_cannot_be_are_refused)
 {
-    (void)state;
     uint8_t header[40] = { 0xED, 0xA1, 0xDA, 0x01, [23] = 3, [28] = 'a', 'b', 'c' };
     header[24]         = 0xFF;
     (void)scratch_write_bytes("long.lcm", header, sizeof header);
@@ -289,16 +282,4 @@ static void lengths_that_cannot_be_are_refused(void **state)
     check_refused("ours.lcm", DIG_EINVAL, "ours.lcm: damaged at byte 0, expected an event");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_example_of_the_formats_is_read),
-        cmocka_unit_test(samples_become_a_recording_that_begins_at_zero),
-        cmocka_unit_test(other_messages_are_handed_on_one_by_one),
-        cmocka_unit_test(a_log_cut_off_in_its_last_event_is_read_up_to_there),
-        cmocka_unit_test(defects_are_refused_and_write_nothing),
-        cmocka_unit_test(values_that_are_no_numbers_and_times_that_cannot_be_are_not_taken),
-        cmocka_unit_test(lengths_that_cannot_be_are_refused),
-    };
-    return cmocka_run_group_tests_name("lcm_log", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -5,9 +5,8 @@
 #include "core/units.h"
 #include "tests/files/yaml_fixture.h"
 
-static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     struct dig_error   error = { "" };
     struct dig_machine m;
     if (dig_machine_read("tests/data/formats/machine.yaml", &m, &error) != DIG_OK) {
@@ -45,9 +44,8 @@ static void loads(const char *const path)
     }
 }
 
-static void a_machine_that_says_no_tolerance_has_that_of_a_tape(void **state)
+TEST(a_machine_that_says_no_tolerance_has_that_of_a_tape)
 {
-    (void)state;
     size_t      size = 0;
     char *const text = scratch_read("tests/data/formats/machine.yaml", &size);
     char *const other =
@@ -64,15 +62,13 @@ static void a_machine_that_says_no_tolerance_has_that_of_a_tape(void **state)
     free(text);
 }
 
-static void every_machine_that_is_shipped_loads(void **state)
+TEST(every_machine_that_is_shipped_loads)
 {
-    (void)state;
     yaml_loads_all("config/machines", loads);
 }
 
-static void the_example_of_a_rig_loads_as_it_is_written(void **state)
+TEST(the_example_of_a_rig_loads_as_it_is_written)
 {
-    (void)state;
     struct dig_error   error = { "" };
     struct dig_machine m;
     if (dig_machine_read("tests/data/formats/machine_sensor.yaml", &m, &error) != DIG_OK) {
@@ -112,9 +108,8 @@ static void expect_refusal(const char *const text, const char *const says)
     assert_contains(error.text, "expected");
 }
 
-static void what_cannot_be_is_refused_with_line_and_key(void **state)
+TEST(what_cannot_be_is_refused_with_line_and_key)
 {
-    (void)state;
     static const char *const bad[][3] = {
         { "name: example 20 t", "name: </script>", "name: \"</script>\", expected letters" },
         { "name: example 20 t", "name: \"a\\nb\"", "with a control character or a line break" },
@@ -146,9 +141,8 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
                       expect_refusal);
 }
 
-static void what_no_rig_can_be_is_refused_with_line_and_key(void **state)
+TEST(what_no_rig_can_be_is_refused_with_line_and_key)
 {
-    (void)state;
     static const char *const bad[][3] = {
         { "place_m: [-0.06, 0.005]", "place_m: [-60, 5]", "bad.yaml:14: force_sensor.place_m: 60" },
         { "turn_deg: 90", "turn_deg: 900", "force_sensor.turn_deg: 900" },
@@ -169,22 +163,9 @@ static void what_no_rig_can_be_is_refused_with_line_and_key(void **state)
                       expect_refusal);
 }
 
-static void every_key_is_known_and_needed(void **state)
+TEST(every_key_is_known_and_needed)
 {
-    (void)state;
     yaml_knows_every_key("tests/data/formats/machine.yaml", expect_refusal);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(the_example_of_a_rig_loads_as_it_is_written),
-        cmocka_unit_test(what_no_rig_can_be_is_refused_with_line_and_key),
-        cmocka_unit_test(a_machine_that_says_no_tolerance_has_that_of_a_tape),
-        cmocka_unit_test(every_machine_that_is_shipped_loads),
-        cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
-        cmocka_unit_test(every_key_is_known_and_needed),
-    };
-    return cmocka_run_group_tests_name("machine_yaml", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

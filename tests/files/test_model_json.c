@@ -46,9 +46,8 @@ static struct dig_model example(void)
     return m;
 }
 
-static void what_was_written_is_read_back(void **state)
+TEST(what_was_written_is_read_back)
 {
-    (void)state;
     struct dig_model  m     = example();
     struct dig_model  back  = { .effects = 0 };
     struct dig_error  error = { "" };
@@ -86,9 +85,8 @@ static void what_was_written_is_read_back(void **state)
     dig_model_finish(&m);
 }
 
-static void the_example_of_the_docs_is_read(void **state)
+TEST(the_example_of_the_docs_is_read)
 {
-    (void)state;
     struct dig_model model = { .effects = 0 };
     struct dig_error error = { "" };
     if (dig_model_read(example_path, &model, &error) != DIG_OK) {
@@ -117,9 +115,8 @@ static const char *spoilt(const char *const find, const char *const put)
     return path;
 }
 
-static void defects_are_refused_by_key_and_write_nothing(void **state)
+TEST(defects_are_refused_by_key_and_write_nothing)
 {
-    (void)state;
     const struct {
         const char *find, *put, *named;
     } cases[] = {
@@ -149,12 +146,4 @@ static void defects_are_refused_by_key_and_write_nothing(void **state)
     assert_int_equal(model.effects, 7);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_written_is_read_back),
-        cmocka_unit_test(the_example_of_the_docs_is_read),
-        cmocka_unit_test(defects_are_refused_by_key_and_write_nothing),
-    };
-    return cmocka_run_group_tests_name("model_json", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -28,9 +28,8 @@ static digsight_prediction_t prediction(void)
                                     .energy_J      = 5.0 };
 }
 
-static void a_curve_is_read_between_its_points(void **state)
+TEST(a_curve_is_read_between_its_points)
 {
-    (void)state;
     const digsight_prediction_t m = prediction();
     struct dig_predicted_curve  curve;
     double                      moment = -1.0;
@@ -59,9 +58,8 @@ static void check_refused(const digsight_prediction_t *const m)
     assert_close(curve.peak_Nm, 42.0, 0.0);
 }
 
-static void what_is_no_curve_is_refused_and_writes_nothing(void **state)
+TEST(what_is_no_curve_is_refused_and_writes_nothing)
 {
-    (void)state;
     digsight_prediction_t m = prediction();
     m.valid                 = 0;
     check_refused(&m);
@@ -92,13 +90,4 @@ static void what_is_no_curve_is_refused_and_writes_nothing(void **state)
         sigma_Nm[17] = moments[i];
         check_refused(&m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_curve_is_read_between_its_points),
-        cmocka_unit_test(what_is_no_curve_is_refused_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("predicted_curve", tests, NULL, NULL);
 }

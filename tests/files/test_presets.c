@@ -27,26 +27,23 @@ static void check_material(const struct dig_scene *const scene, const double dia
     assert_close(scene->laws.cohesion_Jpm3, 0.0, 0.0);
 }
 
-static void the_basic_model_is_table_iii(void **state)
+TEST(the_basic_model_is_table_iii)
 {
-    (void)state;
     const struct dig_scene scene = read_scene("config/scenes/paper_basic.yaml");
     check_material(&scene, 0.0075, 1e8, 0.3, 0.6);
     assert_int_equal(scene.laws.rolling, DIG_ROLLING_NONE);
     assert_close(scene.time_step_s, 1e-5, 1e-12);
 }
 
-static void the_rolling_model_is_table_iv(void **state)
+TEST(the_rolling_model_is_table_iv)
 {
-    (void)state;
     const struct dig_scene scene = read_scene("config/scenes/paper_rolling.yaml");
     check_material(&scene, 0.0075, 1.5e8, 0.2, 0.2);
     assert_int_equal(scene.laws.rolling, DIG_ROLLING_EPSD2);
 }
 
-static void the_steel_balls_are_table_viii(void **state)
+TEST(the_steel_balls_are_table_viii)
 {
-    (void)state;
     const struct dig_scene scene = read_scene("config/scenes/paper_steel.yaml");
     check_material(&scene, 0.011, 2e9, 0.2, 0.2);
     assert_int_equal(scene.laws.rolling, DIG_ROLLING_EPSD2);
@@ -54,9 +51,8 @@ static void the_steel_balls_are_table_viii(void **state)
 
 // Same bucket, box and trajectories, so that the models can be compared with each other and with
 // the reference digs.
-static void all_are_dug_as_the_rig_is(void **state)
+TEST(all_are_dug_as_the_rig_is)
 {
-    (void)state;
     const char *const      name[] = { "basic", "rolling", "steel" };
     const struct dig_scene rig    = read_scene("config/scenes/rig.yaml");
     for (size_t k = 0; k < 3; k++) {
@@ -68,15 +64,4 @@ static void all_are_dug_as_the_rig_is(void **state)
         assert_int_equal(scene.trajectories, rig.trajectories);
         assert_memory_equal(scene.trajectory, rig.trajectory, sizeof rig.trajectory);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_basic_model_is_table_iii),
-        cmocka_unit_test(the_rolling_model_is_table_iv),
-        cmocka_unit_test(the_steel_balls_are_table_viii),
-        cmocka_unit_test(all_are_dug_as_the_rig_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,9 +9,8 @@
     "t_s,boom_rad,arm_rad,bucket_rad,boom_head_Pa,boom_rod_Pa,arm_head_Pa,arm_rod_Pa,"             \
     "bucket_head_Pa,bucket_rod_Pa\n"
 
-static void the_force_recording_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_force_recording_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     struct dig_recording r = { 0 };
     assert_int_equal(dig_recording_read("tests/data/formats/force_recording.csv", &r, NULL),
                      DIG_OK);
@@ -29,9 +28,8 @@ static void the_force_recording_of_the_formats_loads_as_it_is_written(void **sta
     dig_recording_finish(&r);
 }
 
-static void the_machine_recording_of_the_formats_keeps_what_is_missing_missing(void **state)
+TEST(the_machine_recording_of_the_formats_keeps_what_is_missing_missing)
 {
-    (void)state;
     struct dig_machine_recording r = { 0 };
     assert_int_equal(
         dig_machine_recording_read("tests/data/formats/machine_recording.csv", &r, NULL), DIG_OK);
@@ -50,9 +48,8 @@ static void the_machine_recording_of_the_formats_keeps_what_is_missing_missing(v
     dig_machine_recording_finish(&r);
 }
 
-static void the_booms_and_the_arms_pressures_may_lack_a_column(void **state)
+TEST(the_booms_and_the_arms_pressures_may_lack_a_column)
 {
-    (void)state;
     struct dig_machine_recording r = { 0 };
     const char *const            few =
         scratch_write("few.csv", "t_s,boom_rad,arm_rad,bucket_rad,bucket_head_Pa,bucket_rod_Pa\n"
@@ -71,9 +68,8 @@ static void the_booms_and_the_arms_pressures_may_lack_a_column(void **state)
     assert_non_null(strstr(error.text, "bucket_rod_Pa: missing"));
 }
 
-static void a_rig_s_recording_holds_its_force_sensor(void **state)
+TEST(a_rig_s_recording_holds_its_force_sensor)
 {
-    (void)state;
     struct dig_machine_recording r    = { 0 };
     const char *const            path = "tests/data/formats/machine_recording_sensor.csv";
     assert_true(dig_machine_recording_is(path));
@@ -118,9 +114,8 @@ static void a_rig_s_recording_holds_its_force_sensor(void **state)
     assert_false(dig_machine_recording_is(scratch_path("none.csv")));
 }
 
-static void columns_may_come_in_any_order_with_crlf_blanks_and_comments(void **state)
+TEST(columns_may_come_in_any_order_with_crlf_blanks_and_comments)
 {
-    (void)state;
     struct dig_recording r    = { 0 };
     const char *const    path = scratch_write(
            "any.csv", "\xef\xbb\xbf# first\r\n My_Nm , "
@@ -135,9 +130,8 @@ static void columns_may_come_in_any_order_with_crlf_blanks_and_comments(void **s
     dig_recording_finish(&r);
 }
 
-static void a_machine_recording_may_have_a_hole_and_its_times_are_rounded(void **state)
+TEST(a_machine_recording_may_have_a_hole_and_its_times_are_rounded)
 {
-    (void)state;
     struct dig_machine_recording r = { 0 };
     assert_int_equal(
         dig_machine_recording_read(
@@ -151,9 +145,8 @@ static void a_machine_recording_may_have_a_hole_and_its_times_are_rounded(void *
     dig_machine_recording_finish(&r);
 }
 
-static void every_defect_of_a_force_recording_is_told_by_line_and_column(void **state)
+TEST(every_defect_of_a_force_recording_is_told_by_line_and_column)
 {
-    (void)state;
     static const char *const bad[][2] = {
         { "", ":1: no header, expected a header of t_s, pin_x_m" },
         { "# nothing\n", ":1: no header" },
@@ -199,9 +192,8 @@ static void every_defect_of_a_force_recording_is_told_by_line_and_column(void **
     }
 }
 
-static void defects_of_machine_recordings_are_told_too(void **state)
+TEST(defects_of_machine_recordings_are_told_too)
 {
-    (void)state;
     struct dig_error             error = { "" };
     struct dig_machine_recording r     = { .rows = 42 };
     assert_int_equal(dig_machine_recording_read(scratch_write("bad.csv", FORCE), &r, &error),
@@ -224,9 +216,8 @@ static void defects_of_machine_recordings_are_told_too(void **state)
 }
 
 // Loggers count seconds since 1970.
-static void times_may_be_of_a_calendar(void **state)
+TEST(times_may_be_of_a_calendar)
 {
-    (void)state;
     struct dig_recording         force   = { 0 };
     struct dig_machine_recording machine = { 0 };
     assert_int_equal(
@@ -247,9 +238,8 @@ static void times_may_be_of_a_calendar(void **state)
 }
 
 // A rig may measure the moment alone, or lose samples: missing is never zero.
-static void forces_may_be_missing_here_and_there_or_altogether(void **state)
+TEST(forces_may_be_missing_here_and_there_or_altogether)
 {
-    (void)state;
     struct dig_recording r = { 0 };
     const char *path = scratch_write("some.csv", FORCE "0,1,2,3,,5,6,,8,9\n.01,1,2,3,4,,,7,,\n");
     assert_int_equal(dig_recording_read(path, &r, NULL), DIG_OK);
@@ -279,9 +269,8 @@ static void forces_may_be_missing_here_and_there_or_altogether(void **state)
     dig_recording_finish(&r);
 }
 
-static void what_is_written_is_read_back(void **state)
+TEST(what_is_written_is_read_back)
 {
-    (void)state;
     struct dig_force_row       rows[50];
     const struct dig_recording written = { .rows = 50, .row = rows };
     for (size_t i = 0; i < 50; i++) {
@@ -314,9 +303,8 @@ static void what_is_written_is_read_back(void **state)
     assert_false(scratch_exists("out.csv.part"));
 }
 
-static void a_machine_recording_is_read_back_with_its_gaps(void **state)
+TEST(a_machine_recording_is_read_back_with_its_gaps)
 {
-    (void)state;
     struct dig_sample rows[20];
     memset(rows, 0, sizeof rows);
     for (int i = 0; i < 20; i++) {
@@ -349,21 +337,4 @@ static void a_machine_recording_is_read_back_with_its_gaps(void **state)
     free(text);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(times_may_be_of_a_calendar),
-        cmocka_unit_test(the_force_recording_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(the_machine_recording_of_the_formats_keeps_what_is_missing_missing),
-        cmocka_unit_test(a_machine_recording_may_have_a_hole_and_its_times_are_rounded),
-        cmocka_unit_test(the_booms_and_the_arms_pressures_may_lack_a_column),
-        cmocka_unit_test(a_rig_s_recording_holds_its_force_sensor),
-        cmocka_unit_test(columns_may_come_in_any_order_with_crlf_blanks_and_comments),
-        cmocka_unit_test(every_defect_of_a_force_recording_is_told_by_line_and_column),
-        cmocka_unit_test(defects_of_machine_recordings_are_told_too),
-        cmocka_unit_test(forces_may_be_missing_here_and_there_or_altogether),
-        cmocka_unit_test(what_is_written_is_read_back),
-        cmocka_unit_test(a_machine_recording_is_read_back_with_its_gaps),
-    };
-    return cmocka_run_group_tests_name("recording_csv", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -5,9 +5,8 @@
 
 // Where the tooth starts and the pin ends: the first stands in the reference digs' manifest as
 // toe_x0_m, the second is the last line of curves/mu0.3_mur0.3_rho2500__actual.csv there.
-static void the_rig_is_the_scene_of_the_reference_digs(void **state)
+TEST(the_rig_is_the_scene_of_the_reference_digs)
 {
-    (void)state;
     const struct dig_scene             rig     = yaml_scene("config/scenes/rig.yaml");
     const struct dig_trajectory *const actual  = dig_scene_find(&rig, "actual");
     const struct dig_trajectory *const simpleA = dig_scene_find(&rig, "simpleA");
@@ -40,15 +39,13 @@ static void loads(const char *const path)
     (void)yaml_scene(path);
 }
 
-static void every_scene_that_is_shipped_loads(void **state)
+TEST(every_scene_that_is_shipped_loads)
 {
-    (void)state;
     yaml_loads_all("config/scenes", loads);
 }
 
-static void the_example_of_the_formats_loads_as_it_is_written(void **state)
+TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    (void)state;
     const struct dig_scene s = yaml_scene("tests/data/formats/scene.yaml");
     assert_string_equal(s.name, "tub");
     assert_int_equal(s.bucket.points, 4);
@@ -64,9 +61,8 @@ static void the_example_of_the_formats_loads_as_it_is_written(void **state)
     assert_close(s.trajectory[0].theta0_rad, -DIG_PI / 12.0, 1e-15);
 }
 
-static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
+TEST(the_hash_is_of_what_is_meant_not_of_how_it_is_written)
 {
-    (void)state;
     size_t      size = 0;
     char *const text = scratch_read("tests/data/formats/scene.yaml", &size);
     char        before[65], after[65];
@@ -101,9 +97,8 @@ static void the_hash_is_of_what_is_meant_not_of_how_it_is_written(void **state)
     free(text);
 }
 
-static void what_cannot_be_is_refused_with_line_and_key(void **state)
+TEST(what_cannot_be_is_refused_with_line_and_key)
 {
-    (void)state;
     static const char *const bad[][3] = {
         { "young_Pa: 5.0e+6", "young_Pa: -1", "bad.yaml:22: material.young_Pa: -1" },
         { "young_Pa: 5.0e+6", "young_Pa: 5.0e+6\n  young_at_kgpm3: 5",
@@ -126,21 +121,9 @@ static void what_cannot_be_is_refused_with_line_and_key(void **state)
                       yaml_scene_refused);
 }
 
-static void every_key_is_known_and_needed(void **state)
+TEST(every_key_is_known_and_needed)
 {
-    (void)state;
     yaml_knows_every_key("tests/data/formats/scene.yaml", yaml_scene_refused);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_rig_is_the_scene_of_the_reference_digs),
-        cmocka_unit_test(every_scene_that_is_shipped_loads),
-        cmocka_unit_test(the_example_of_the_formats_loads_as_it_is_written),
-        cmocka_unit_test(the_hash_is_of_what_is_meant_not_of_how_it_is_written),
-        cmocka_unit_test(what_cannot_be_is_refused_with_line_and_key),
-        cmocka_unit_test(every_key_is_known_and_needed),
-    };
-    return cmocka_run_group_tests_name("scene_yaml", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

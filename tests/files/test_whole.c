@@ -7,9 +7,8 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-static void a_file_that_cannot_be_finished_leaves_the_old_one_whole(void **state)
+TEST(a_file_that_cannot_be_finished_leaves_the_old_one_whole)
 {
-    (void)state;
     struct dig_error  error = { "" };
     struct dig_out    out;
     const char *const path = scratch_write("kept.txt", "old");
@@ -45,9 +44,8 @@ static void a_file_that_cannot_be_finished_leaves_the_old_one_whole(void **state
 
 // The program's output is written where it points to, after what stands there, and stays what it
 // is.
-static void standard_output_is_written_to_and_not_replaced(void **state)
+TEST(standard_output_is_written_to_and_not_replaced)
 {
-    (void)state;
     struct stat before, after;
     assert_int_equal(lstat("/dev/stdout", &before), 0);
     const int kept = dup(STDOUT_FILENO);
@@ -79,9 +77,8 @@ static void standard_output_is_written_to_and_not_replaced(void **state)
 }
 
 // From a folder of somebody else's it could point to any file of the user's.
-static void a_link_is_replaced_and_what_it_points_to_stays(void **state)
+TEST(a_link_is_replaced_and_what_it_points_to_stays)
 {
-    (void)state;
     struct dig_out out;
     struct stat    link;
     assert_int_equal(symlink(scratch_write("target.txt", "old"), scratch_path("link.txt")), 0);
@@ -108,12 +105,4 @@ static void a_link_is_replaced_and_what_it_points_to_stays(void **state)
     assert_true(S_ISLNK(link.st_mode));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_that_cannot_be_finished_leaves_the_old_one_whole),
-        cmocka_unit_test(standard_output_is_written_to_and_not_replaced),
-        cmocka_unit_test(a_link_is_replaced_and_what_it_points_to_stays),
-    };
-    return cmocka_run_group_tests_name("whole", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

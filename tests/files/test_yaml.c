@@ -61,9 +61,8 @@ static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POIN
     "  - {weight_kg: 2, name: head}\n"                                                             \
     "  - weight_kg: 3\n"
 
-static void what_fits_the_schema_is_loaded(void **state)
+TEST(what_fits_the_schema_is_loaded)
 {
-    (void)state;
     struct dig_error error = { "" };
     cyaml_data_t    *data  = NULL;
     assert_int_equal(dig_yaml_load(scratch_write("good.yaml", GOOD), &schema, &data, &error),
@@ -83,9 +82,8 @@ static void what_fits_the_schema_is_loaded(void **state)
     dig_yaml_free(&schema, data);
 }
 
-static void a_comma_as_the_users_decimal_point_changes_nothing(void **state)
+TEST(a_comma_as_the_users_decimal_point_changes_nothing)
 {
-    (void)state;
     cyaml_data_t *data   = NULL;
     const char   *before = setlocale(LC_NUMERIC, "de_DE.UTF-8");
     assert_int_equal(dig_yaml_load(scratch_write("good.yaml", GOOD), &schema, &data, NULL), DIG_OK);
@@ -96,9 +94,8 @@ static void a_comma_as_the_users_decimal_point_changes_nothing(void **state)
 }
 
 // Every defect by file, line, key and expectation, and nothing is loaded.
-static void every_defect_is_told_by_line_key_and_expectation(void **state)
+TEST(every_defect_is_told_by_line_key_and_expectation)
 {
-    (void)state;
     static const struct {
         const char *text, *line, *says;
     } bad[] = {
@@ -172,9 +169,8 @@ static void every_defect_is_told_by_line_key_and_expectation(void **state)
     }
 }
 
-static void a_file_that_cannot_be_read_is_told_with_the_systems_words(void **state)
+TEST(a_file_that_cannot_be_read_is_told_with_the_systems_words)
 {
-    (void)state;
     struct dig_error error = { "" };
     cyaml_data_t    *data  = NULL;
     assert_int_equal(dig_yaml_load(scratch_path("absent.yaml"), &schema, &data, &error), DIG_EIO);
@@ -188,9 +184,8 @@ static void a_file_that_cannot_be_read_is_told_with_the_systems_words(void **sta
     assert_null(data);
 }
 
-static void a_value_is_found_by_its_dotted_key(void **state)
+TEST(a_value_is_found_by_its_dotted_key)
 {
-    (void)state;
     const char *const path = scratch_write("good.yaml", GOOD);
     assert_int_equal(dig_yaml_line(path, "name"), 2);
     assert_int_equal(dig_yaml_line(path, "inner.weight_kg"), 9);
@@ -204,9 +199,8 @@ static void a_value_is_found_by_its_dotted_key(void **state)
     assert_int_equal(dig_yaml_line(scratch_path("absent.yaml"), "name"), 0);
 }
 
-static void a_refusal_after_loading_names_the_nearest_line(void **state)
+TEST(a_refusal_after_loading_names_the_nearest_line)
 {
-    (void)state;
     const char *const path  = scratch_write("good.yaml", GOOD);
     struct dig_error  error = { "" };
     assert_int_equal(dig_yaml_refuse(path, &error, "parts[1].weight_kg: %d, expected 4", 3),
@@ -222,9 +216,8 @@ static void a_refusal_after_loading_names_the_nearest_line(void **state)
 
 // Whatever the bytes, the answer is a struct or a refusal. Each byte of a good file is replaced by
 // bytes that mean something to YAML, and the file is cut at each length.
-static void damaged_bytes_never_do_worse_than_a_refusal(void **state)
+TEST(damaged_bytes_never_do_worse_than_a_refusal)
 {
-    (void)state;
     static const char evil[] = "\x01\xff:{[&*!|>-%@'\"\n#\t ,";
     char              text[] = GOOD;
     for (size_t i = 0; i + 1 < sizeof text; i++) {
@@ -250,16 +243,4 @@ static void damaged_bytes_never_do_worse_than_a_refusal(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_fits_the_schema_is_loaded),
-        cmocka_unit_test(a_comma_as_the_users_decimal_point_changes_nothing),
-        cmocka_unit_test(every_defect_is_told_by_line_key_and_expectation),
-        cmocka_unit_test(a_file_that_cannot_be_read_is_told_with_the_systems_words),
-        cmocka_unit_test(a_value_is_found_by_its_dotted_key),
-        cmocka_unit_test(a_refusal_after_loading_names_the_nearest_line),
-        cmocka_unit_test(damaged_bytes_never_do_worse_than_a_refusal),
-    };
-    return cmocka_run_group_tests_name("yaml", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

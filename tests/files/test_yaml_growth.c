@@ -15,9 +15,8 @@ static enum dig_status read_with(const char *const source, struct dig_error *con
     return dig_campaign_read(scratch_dir, &campaign, error);
 }
 
-static void aliases_that_grow_tenfold_line_by_line_are_refused(void **state)
+TEST(aliases_that_grow_tenfold_line_by_line_are_refused)
 {
-    (void)state;
     struct dig_error error = { "" };
     char             text[4000];
     size_t used = (size_t)snprintf(text, sizeof text, "\n  - &a [x, x, x, x, x, x, x, x, x, x]");
@@ -31,18 +30,16 @@ static void aliases_that_grow_tenfold_line_by_line_are_refused(void **state)
     assert_contains(error.text, "campaign.yaml:6: aliases stand for more than 100000 values");
 }
 
-static void an_alias_within_its_own_anchor_is_refused(void **state)
+TEST(an_alias_within_its_own_anchor_is_refused)
 {
-    (void)state;
     struct dig_error error = { "" };
     assert_int_equal(read_with("&a [1, *a]", &error), DIG_EINVAL);
     assert_contains(error.text, "campaign.yaml:1: an alias within its own anchor");
     assert_int_equal(read_with("&a {x: {y: *a}}", &error), DIG_EINVAL);
 }
 
-static void what_nests_without_end_is_refused_at_once(void **state)
+TEST(what_nests_without_end_is_refused_at_once)
 {
-    (void)state;
     static char      text[300001];
     struct dig_error error = { "" };
     memset(text, '[', sizeof text - 1);
@@ -54,9 +51,8 @@ static void what_nests_without_end_is_refused_at_once(void **state)
     assert_int_equal(read_with(text, NULL), DIG_OK);
 }
 
-static void anchors_without_number_are_refused_and_a_few_aliases_are_not(void **state)
+TEST(anchors_without_number_are_refused_and_a_few_aliases_are_not)
 {
-    (void)state;
     static char      text[20000];
     struct dig_error error = { "" };
     size_t           used  = (size_t)snprintf(text, sizeof text, "[");
@@ -70,9 +66,8 @@ static void anchors_without_number_are_refused_and_a_few_aliases_are_not(void **
 }
 
 // 20 MB of them took 1.6 GB.
-static void values_without_number_are_refused_and_many_are_not(void **state)
+TEST(values_without_number_are_refused_and_many_are_not)
 {
-    (void)state;
     static char text[2200000];
     for (size_t n = 990000; n <= 1010000; n += 20000) {
         size_t used = (size_t)snprintf(text, sizeof text, "source: [x");
@@ -93,9 +88,8 @@ static void values_without_number_are_refused_and_many_are_not(void **state)
 }
 
 // Each is compared with all before it: 50,000 took five seconds.
-static void directives_without_number_are_refused_and_a_few_are_not(void **state)
+TEST(directives_without_number_are_refused_and_a_few_are_not)
 {
-    (void)state;
     for (int n = 8; n <= 9; n++) {
         static struct dig_campaign campaign;
         struct dig_error           error = { "" };
@@ -114,15 +108,4 @@ static void directives_without_number_are_refused_and_a_few_are_not(void **state
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(aliases_that_grow_tenfold_line_by_line_are_refused),
-        cmocka_unit_test(an_alias_within_its_own_anchor_is_refused),
-        cmocka_unit_test(what_nests_without_end_is_refused_at_once),
-        cmocka_unit_test(anchors_without_number_are_refused_and_a_few_aliases_are_not),
-        cmocka_unit_test(values_without_number_are_refused_and_many_are_not),
-        cmocka_unit_test(directives_without_number_are_refused_and_a_few_are_not),
-    };
-    return cmocka_run_group_tests_name("yaml_growth", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -6,9 +6,8 @@
 #include "tests/testlib.h"
 
 // The daemon starts between the two frames of a cycle: what it pairs must still be one cycle's.
-static void frames_of_one_cycle_are_paired_wherever_it_starts(void **state)
+TEST(frames_of_one_cycle_are_paired_wherever_it_starts)
 {
-    (void)state;
     for (int begin = 0; begin < 2; begin++) {
         struct dig_assembler a;
         dig_assembler_init(&a, &can);
@@ -33,9 +32,8 @@ static void frames_of_one_cycle_are_paired_wherever_it_starts(void **state)
     }
 }
 
-static void nothing_comes_while_one_needed_message_is_missing(void **state)
+TEST(nothing_comes_while_one_needed_message_is_missing)
 {
-    (void)state;
     struct dig_assembler a;
     dig_assembler_init(&a, &can);
     struct dig_sample s = { .time_ns = 42 };
@@ -92,9 +90,8 @@ static bool cycle(struct dig_assembler *const a, const int64_t at_ns, const doub
     return (with_force && dig_assembler_take(a, &f, sample)) || came;
 }
 
-static void without_the_force_the_moment_goes_on_until_it_is_back(void **state)
+TEST(without_the_force_the_moment_goes_on_until_it_is_back)
 {
-    (void)state;
     const struct dig_assembler_settings settings = boxes();
     struct dig_assembler                a;
     dig_assembler_init(&a, &settings);
@@ -120,9 +117,8 @@ static void without_the_force_the_moment_goes_on_until_it_is_back(void **state)
 }
 
 // A message that never came is waited for no longer than one that fell silent.
-static void a_force_that_never_comes_does_not_stop_the_moment(void **state)
+TEST(a_force_that_never_comes_does_not_stop_the_moment)
 {
-    (void)state;
     const struct dig_assembler_settings settings = boxes();
     struct dig_assembler                a;
     dig_assembler_init(&a, &settings);
@@ -148,9 +144,8 @@ static void a_force_that_never_comes_does_not_stop_the_moment(void **state)
 
 // Neither a lost frame, nor a box slower than the others, nor a pause of the whole bus is a
 // silence.
-static void what_is_only_late_is_waited_for(void **state)
+TEST(what_is_only_late_is_waited_for)
 {
-    (void)state;
     const struct dig_assembler_settings settings = boxes();
     struct dig_assembler                a;
     dig_assembler_init(&a, &settings);
@@ -176,9 +171,8 @@ static void what_is_only_late_is_waited_for(void **state)
     assert_int_equal(a.drops.without_force, 0);
 }
 
-static void an_optional_signal_comes_along_until_it_is_old(void **state)
+TEST(an_optional_signal_comes_along_until_it_is_old)
 {
-    (void)state;
     struct dig_assembler a;
     dig_assembler_init(&a, &can);
     const struct dig_reading tilt = alive(1000 * MS, 1);
@@ -200,9 +194,8 @@ static void an_optional_signal_comes_along_until_it_is_old(void **state)
     assert_false(s.valid[DIG_SIGNAL_PITCH_rad]);
 }
 
-static void time_scale_makes_a_fast_bench_look_like_the_machine(void **state)
+TEST(time_scale_makes_a_fast_bench_look_like_the_machine)
 {
-    (void)state;
     struct dig_assembler_settings fast = poll_settings;
     fast.time_scale                    = 4.0;
     struct dig_assembler a;
@@ -215,9 +208,8 @@ static void time_scale_makes_a_fast_bench_look_like_the_machine(void **state)
     }
 }
 
-static void time_that_goes_back_gives_no_sample(void **state)
+TEST(time_that_goes_back_gives_no_sample)
 {
-    (void)state;
     struct dig_assembler a;
     dig_assembler_init(&a, &poll_settings);
     struct dig_sample        s;
@@ -230,9 +222,8 @@ static void time_that_goes_back_gives_no_sample(void **state)
 
 // Angles every 10 ms, pressures every 50 ms and out of step: values belong to one moment all the
 // same.
-static void messages_of_unlike_rates_are_brought_to_one_time(void **state)
+TEST(messages_of_unlike_rates_are_brought_to_one_time)
 {
-    (void)state;
     struct dig_assembler_settings slow = can;
     slow.coherent_s                    = 0.012;
     slow.frame[0].delay_s              = 0.003; // the pressures are older than their stamps say
@@ -255,20 +246,4 @@ static void messages_of_unlike_rates_are_brought_to_one_time(void **state)
         }
     }
     assert_in_range(samples, 38, 40);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_of_one_cycle_are_paired_wherever_it_starts),
-        cmocka_unit_test(nothing_comes_while_one_needed_message_is_missing),
-        cmocka_unit_test(without_the_force_the_moment_goes_on_until_it_is_back),
-        cmocka_unit_test(a_force_that_never_comes_does_not_stop_the_moment),
-        cmocka_unit_test(what_is_only_late_is_waited_for),
-        cmocka_unit_test(an_optional_signal_comes_along_until_it_is_old),
-        cmocka_unit_test(time_scale_makes_a_fast_bench_look_like_the_machine),
-        cmocka_unit_test(messages_of_unlike_rates_are_brought_to_one_time),
-        cmocka_unit_test(time_that_goes_back_gives_no_sample),
-    };
-    return cmocka_run_group_tests_name("assemble", tests, NULL, NULL);
 }

@@ -5,9 +5,8 @@
 #include "tests/firmware_host/readings.h"
 #include "tests/testlib.h"
 
-static void what_is_no_number_is_missing_and_counted(void **state)
+TEST(what_is_no_number_is_missing_and_counted)
 {
-    (void)state;
     struct dig_assembler a;
     dig_assembler_init(&a, &can);
     struct dig_reading p              = pressures(1000 * MS, 5.0);
@@ -35,9 +34,8 @@ static void what_is_no_number_is_missing_and_counted(void **state)
     assert_true(dig_sample_is_complete(&s));
 }
 
-static void a_counter_that_stands_still_stops_samples_until_it_moves(void **state)
+TEST(a_counter_that_stands_still_stops_samples_until_it_moves)
 {
-    (void)state;
     struct dig_assembler a;
     dig_assembler_init(&a, &can);
     struct dig_sample s;
@@ -61,9 +59,8 @@ static void a_counter_that_stands_still_stops_samples_until_it_moves(void **stat
     assert_in_range(a.drops.frozen, 90, 120);
 }
 
-static void a_poll_that_repeats_the_counter_gives_no_second_sample(void **state)
+TEST(a_poll_that_repeats_the_counter_gives_no_second_sample)
 {
-    (void)state;
     struct dig_assembler a;
     dig_assembler_init(&a, &poll_settings);
     struct dig_sample s;
@@ -83,9 +80,8 @@ static void a_poll_that_repeats_the_counter_gives_no_second_sample(void **state)
     assert_in_range(a.drops.frozen, 90, 110);
 }
 
-static void a_value_that_jumps_is_dropped_until_it_could_have_come_there(void **state)
+TEST(a_value_that_jumps_is_dropped_until_it_could_have_come_there)
 {
-    (void)state;
     struct dig_assembler_settings careful     = poll_settings;
     careful.max_rate[DIG_SIGNAL_BOOM_HEAD_Pa] = 100.0; // and so 2 at once, and 1 more each 10 ms
     struct dig_assembler a;
@@ -102,9 +98,8 @@ static void a_value_that_jumps_is_dropped_until_it_could_have_come_there(void **
     assert_int_equal(a.drops.jump, 1 + 7);
 }
 
-static void frames_that_repeat_or_fail_to_come_are_counted(void **state)
+TEST(frames_that_repeat_or_fail_to_come_are_counted)
 {
-    (void)state;
     struct dig_assembler_settings counted = can;
     counted.frame[0].counter_mod          = 16;
     counted.frame[1].cycle_s              = 0.010;
@@ -126,9 +121,8 @@ static void frames_that_repeat_or_fail_to_come_are_counted(void **state)
     assert_int_equal(samples, 200 - 2 - 1 - 1);
 }
 
-static void pressures_that_freeze_under_a_moving_front_stop_samples(void **state)
+TEST(pressures_that_freeze_under_a_moving_front_stop_samples)
 {
-    (void)state;
     struct dig_assembler_settings watchful = poll_settings;
     watchful.stuck_s                       = 0.5;
     struct dig_assembler a;
@@ -147,17 +141,4 @@ static void pressures_that_freeze_under_a_moving_front_stop_samples(void **state
     assert_in_range(during, 25, 27); // 0.1 rad
     assert_int_equal(after, 100);
     assert_int_equal(a.drops.stuck, 100 - during);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_no_number_is_missing_and_counted),
-        cmocka_unit_test(a_counter_that_stands_still_stops_samples_until_it_moves),
-        cmocka_unit_test(a_poll_that_repeats_the_counter_gives_no_second_sample),
-        cmocka_unit_test(a_value_that_jumps_is_dropped_until_it_could_have_come_there),
-        cmocka_unit_test(frames_that_repeat_or_fail_to_come_are_counted),
-        cmocka_unit_test(pressures_that_freeze_under_a_moving_front_stop_samples),
-    };
-    return cmocka_run_group_tests_name("assemble", tests, NULL, NULL);
 }

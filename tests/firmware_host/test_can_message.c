@@ -39,9 +39,8 @@ static void put_stamp(struct message *const m, const time_t s, const long ns)
     put(m, SOL_SOCKET, SCM_TIMESTAMPNS, &stamp, sizeof stamp);
 }
 
-static void a_stamp_is_put_back_by_its_age(void **state)
+TEST(a_stamp_is_put_back_by_its_age)
 {
-    (void)state;
     static const struct {
         time_t  s;
         long    ns;
@@ -61,9 +60,8 @@ static void a_stamp_is_put_back_by_its_age(void **state)
 }
 
 // The wall clock was set between the stamp and now.
-static void a_stamp_of_another_hour_is_the_time_of_reading(void **state)
+TEST(a_stamp_of_another_hour_is_the_time_of_reading)
 {
-    (void)state;
     static const struct timespec stamps[] = { { 1700003600, 500000000 },   // set back by an hour
                                               { 1699996400, 500000000 },   // or on
                                               { 1700000000, 500000001 },   // by a nanosecond
@@ -77,9 +75,8 @@ static void a_stamp_of_another_hour_is_the_time_of_reading(void **state)
     }
 }
 
-static void without_a_stamp_it_is_the_time_of_reading(void **state)
+TEST(without_a_stamp_it_is_the_time_of_reading)
 {
-    (void)state;
     const struct timespec wall  = { 1700000000, 500000000 };
     const struct timespec other = { 1700000000, 0 };
     struct message        m;
@@ -90,9 +87,8 @@ static void without_a_stamp_it_is_the_time_of_reading(void **state)
     assert_int_equal(dig_can_stamp_ns(&m.header, &wall, 42 * S), 42 * S);
 }
 
-static void the_count_of_frames_without_room_is_read_beside_a_stamp(void **state)
+TEST(the_count_of_frames_without_room_is_read_beside_a_stamp)
 {
-    (void)state;
     const uint32_t count = 4000000007U;
     struct message m;
     empty(&m);
@@ -113,9 +109,8 @@ static bool passes(const struct can_filter *const filter, const size_t count, co
     return any;
 }
 
-static void only_data_frames_of_the_map_pass_in_their_own_format(void **state)
+TEST(only_data_frames_of_the_map_pass_in_their_own_format)
 {
-    (void)state;
     struct dig_signal_map map = { .kind = DIG_MAP_CAN, .groups = 2 };
     map.group[0].id           = 0x18FF7DE8;
     map.group[0].extended     = true;
@@ -132,16 +127,4 @@ static void only_data_frames_of_the_map_pass_in_their_own_format(void **state)
     assert_false(passes(filter, 2, 0x123 | CAN_RTR_FLAG));
     assert_false(passes(filter, 2, 0x123 | CAN_EFF_FLAG));
     assert_false(passes(filter, 2, 0x18FF7DE8 & CAN_SFF_MASK));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stamp_is_put_back_by_its_age),
-        cmocka_unit_test(a_stamp_of_another_hour_is_the_time_of_reading),
-        cmocka_unit_test(without_a_stamp_it_is_the_time_of_reading),
-        cmocka_unit_test(the_count_of_frames_without_room_is_read_beside_a_stamp),
-        cmocka_unit_test(only_data_frames_of_the_map_pass_in_their_own_format),
-    };
-    return cmocka_run_group_tests_name("can_message", tests, NULL, NULL);
 }

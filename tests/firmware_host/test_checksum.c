@@ -10,9 +10,8 @@
 
 // The check value every catalogue of CRCs gives for "123456789". The byte the checksum stands in is
 // skipped wherever it is.
-static void crc8_gives_the_published_check_value(void **state)
+TEST(crc8_gives_the_published_check_value)
 {
-    (void)state;
     for (size_t at = 0; at <= 9; at++) {
         uint8_t data[10];
         memcpy(data, "123456789", at);
@@ -23,9 +22,8 @@ static void crc8_gives_the_published_check_value(void **state)
 }
 
 // By hand: 1 + 2 + 250 + 9 = 262 = 256 + 6; 1 ^ 2 ^ 250 ^ 9 = 0xF0.
-static void sums_are_those_of_the_other_bytes(void **state)
+TEST(sums_are_those_of_the_other_bytes)
 {
-    (void)state;
     const uint8_t data[5] = { 1, 2, 250, 77, 9 };
     assert_int_equal(dig_checksum_of(DIG_CHECKSUM_SUM8, 5, data, 3, 0, 0), 6);
     assert_int_equal(dig_checksum_of(DIG_CHECKSUM_XOR8, 5, data, 3, 0, 0), 0xF0);
@@ -34,16 +32,14 @@ static void sums_are_those_of_the_other_bytes(void **state)
 // By hand, a torque command of source 0x0B, id 0x0C00000B: bytes add to 0x01 + 0x00 + 0x7D + 0xFF +
 // 0xFF + 0xFF + 0xFF = 0x47A, counter 5, id 0x17: 0x496 = 1174; 1174 >> 6 = 18, & 3 = 2; 1174 >> 3
 // = 146; 2 + 146 + 1174 = 1322; & 7 = 2.
-static void j1939_s_torque_command_is_folded(void **state)
+TEST(j1939_s_torque_command_is_folded)
 {
-    (void)state;
     const uint8_t data[8] = { 0x01, 0x00, 0x7D, 0xFF, 0xFF, 0xFF, 0xFF, 0x25 };
     assert_int_equal(dig_checksum_of(DIG_CHECKSUM_J1939_TSC1, 8, data, 7, 0x0C00000B, 5), 2);
 }
 
-static void the_rig_s_seal_is_accepted_and_any_flipped_bit_is_not(void **state)
+TEST(the_rig_s_seal_is_accepted_and_any_flipped_bit_is_not)
 {
-    (void)state;
     for (unsigned seed = 0; seed < 200; seed++) {
         struct dig_rig_can_frame frame = { .id = 0x18FF79E8 };
         for (unsigned i = 0; i < 6; i++) {
@@ -62,15 +58,4 @@ static void the_rig_s_seal_is_accepted_and_any_flipped_bit_is_not(void **state)
             assert_int_not_equal(bad.data[7], other);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(crc8_gives_the_published_check_value),
-        cmocka_unit_test(sums_are_those_of_the_other_bytes),
-        cmocka_unit_test(j1939_s_torque_command_is_folded),
-        cmocka_unit_test(the_rig_s_seal_is_accepted_and_any_flipped_bit_is_not),
-    };
-    return cmocka_run_group_tests_name("checksum", tests, NULL, NULL);
 }

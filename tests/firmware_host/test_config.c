@@ -17,9 +17,8 @@ static struct dig_config read_good(const char *const path)
     return config;
 }
 
-static void paths_are_relative_to_the_file(void **state)
+TEST(paths_are_relative_to_the_file)
 {
-    (void)state;
     char              expected[600];
     struct dig_config c = read_good(scratch_write("c.yaml", MINIMAL REPLAY));
     (void)snprintf(expected, sizeof expected, "%s", scratch_path("t.sqlite"));
@@ -34,9 +33,8 @@ static void paths_are_relative_to_the_file(void **state)
 
 // The example in docs/formats.md says it shows the defaults: a file without these keys must mean
 // the same.
-static void the_example_of_the_formats_shows_the_defaults(void **state)
+TEST(the_example_of_the_formats_shows_the_defaults)
 {
-    (void)state;
     const struct dig_config example = read_good("tests/data/formats/digsightd.yaml");
     const struct dig_config minimal = read_good(scratch_write(
         "c.yaml", MINIMAL "input: {kind: can, can: {interface: can0, dbc: d, map: m}}\n"));
@@ -69,9 +67,8 @@ static void the_example_of_the_formats_shows_the_defaults(void **state)
     assert_close(example.estimator.outside_floors, minimal.estimator.outside_floors, 0.0);
 }
 
-static void every_input_is_read(void **state)
+TEST(every_input_is_read)
 {
-    (void)state;
     struct dig_config c = read_good(scratch_write(
         "c.yaml", MINIMAL
         "input: {kind: modbus-tcp, modbus: {address: \"[::1]:502\", map: m, poll_Hz: 50}}\n"));
@@ -100,17 +97,15 @@ static void every_input_is_read(void **state)
     assert_close(c.tick_s, 0.002, 1e-15);
 }
 
-static void shipped_configurations_are_read(void **state)
+TEST(shipped_configurations_are_read)
 {
-    (void)state;
     assert_int_equal(read_good("config/digsightd.yaml").kind, DIG_INPUT_MODBUS_TCP);
     assert_int_equal(read_good("config/digsightd_can.yaml").kind, DIG_INPUT_CAN);
     assert_int_equal(read_good("config/digsightd_rtu.yaml").kind, DIG_INPUT_MODBUS_RTU);
 }
 
-static void simple_digs_identify_unless_others_are_named(void **state)
+TEST(simple_digs_identify_unless_others_are_named)
 {
-    (void)state;
     struct dig_config c = read_good(scratch_write("c.yaml", MINIMAL REPLAY));
     assert_true(dig_config_identifies(&c, "simpleA"));
     assert_false(dig_config_identifies(&c, "actual"));
@@ -119,9 +114,8 @@ static void simple_digs_identify_unless_others_are_named(void **state)
     assert_false(dig_config_identifies(&c, "simpleA"));
 }
 
-static void defects_are_refused_with_file_line_key_and_write_nothing(void **state)
+TEST(defects_are_refused_with_file_line_key_and_write_nothing)
 {
-    (void)state;
     static const struct {
         const char *text, *expected;
     } cases[] = {
@@ -173,15 +167,4 @@ static void defects_are_refused_with_file_line_key_and_write_nothing(void **stat
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_are_relative_to_the_file),
-        cmocka_unit_test(the_example_of_the_formats_shows_the_defaults),
-        cmocka_unit_test(every_input_is_read),
-        cmocka_unit_test(shipped_configurations_are_read),
-        cmocka_unit_test(simple_digs_identify_unless_others_are_named),
-        cmocka_unit_test(defects_are_refused_with_file_line_key_and_write_nothing),
-    };
-    return cmocka_run_group_tests_name("config", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -9,9 +9,8 @@
     "  - {name: bucket_rad, register: 3, min: -2, max: 2}\n"                                       \
     "  - {name: bucket_head_Pa, register: 4, min: 0, max: 4.0e7}\n"
 
-static void a_machine_with_the_buckets_pressures_alone_can_be_mapped(void **state)
+TEST(a_machine_with_the_buckets_pressures_alone_can_be_mapped)
 {
-    (void)state;
     static const char rod[] = "  - {name: bucket_rod_Pa, register: 5, min: 0, max: 4.0e7}\n";
     char              text[1024];
     (void)snprintf(text, sizeof text, BARE "%s", rod);
@@ -38,9 +37,8 @@ static void a_machine_with_the_buckets_pressures_alone_can_be_mapped(void **stat
 }
 
 // A rig's: the pin's place in millimetres, the sensor in newtons, each register signed.
-static void a_rig_with_a_force_sensor_can_be_mapped(void **state)
+TEST(a_rig_with_a_force_sensor_can_be_mapped)
 {
-    (void)state;
     static const char text[] =
         "kind: modbus\nsignals:\n"
         "  - {name: bucket_rad,   register: 0, type: int16, scale: 1e-4, min: -4, max: 4}\n"
@@ -77,9 +75,8 @@ static void a_rig_with_a_force_sensor_can_be_mapped(void **state)
     assert_contains(error.text, "no entry sensor_My_Nm, expected the pin's place");
 }
 
-static void defects_are_refused_with_file_line_and_key(void **state)
+TEST(defects_are_refused_with_file_line_and_key)
 {
-    (void)state;
     static const char angles[] =
         "  - {name: arm_rad, register: 12, min: -2, max: 2}\n"
         "  - {name: bucket_rad, register: 14, min: -2, max: 2}\n" PRESSURES;
@@ -146,9 +143,8 @@ static void defects_are_refused_with_file_line_and_key(void **state)
 }
 
 // What carries nothing but the force can be done without.
-static void a_block_of_force_alone_is_spared(void **state)
+TEST(a_block_of_force_alone_is_spared)
 {
-    (void)state;
     static const char           text[] = "kind: modbus\n"
                                          "blocks:\n"
                                          "  - {register: 0, registers: 4}\n"
@@ -175,9 +171,8 @@ static void a_block_of_force_alone_is_spared(void **state)
 }
 
 // Registers far apart are asked for in as few requests as need be, or as the map says.
-static void registers_far_apart_come_in_blocks(void **state)
+TEST(registers_far_apart_come_in_blocks)
 {
-    (void)state;
     static const char far[] =
         "kind: modbus\n%s"
         "alive: {register: 4000}\n"
@@ -259,9 +254,8 @@ static void check_can(const char *const entry, const char *const expected)
     dig_dbc_finish(&dbc);
 }
 
-static void can_entries_must_fit_the_dbc(void **state)
+TEST(can_entries_must_fit_the_dbc)
 {
-    (void)state;
     check_can("name: boom_rad, signal: plain", "bad.yaml:3: signals[0].message: missing");
     check_can("name: boom_rad, message: N, signal: plain", "\"N\", expected a message of the DBC");
     check_can("name: boom_rad, message: M, signal: none", "\"none\", expected a signal of M");
@@ -273,15 +267,4 @@ static void can_entries_must_fit_the_dbc(void **state)
               "signals[0].scale: 1, expected 1e+06");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_machine_with_the_buckets_pressures_alone_can_be_mapped),
-        cmocka_unit_test(a_block_of_force_alone_is_spared),
-        cmocka_unit_test(registers_far_apart_come_in_blocks),
-        cmocka_unit_test(a_rig_with_a_force_sensor_can_be_mapped),
-        cmocka_unit_test(defects_are_refused_with_file_line_and_key),
-        cmocka_unit_test(can_entries_must_fit_the_dbc),
-    };
-    return cmocka_run_group_tests_name("config_map", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

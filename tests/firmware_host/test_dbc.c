@@ -27,9 +27,8 @@ static double decode(const struct dig_dbc *const dbc, const char *const message,
 }
 
 // Worked by hand: 0x69 = 105, 105 * 0.2 - 10 = 11; 0x37 = 55 is 1 MPa; 0x32 = 50 is none.
-static void golden_pressure_frame_of_a_zx200(void **state)
+TEST(golden_pressure_frame_of_a_zx200)
 {
-    (void)state;
     struct dig_dbc dbc;
     assert_int_equal(dig_dbc_read("config/can/zx200.dbc", &dbc, NULL), DIG_OK);
     const struct dig_dbc_message *const m = dig_dbc_find(&dbc, "Pressure_1");
@@ -48,9 +47,8 @@ static void golden_pressure_frame_of_a_zx200(void **state)
 
 // Worked by hand: low byte first, 0x72 0x64 is 0x6472 = 25714, 25714 * 0.0004 - 10 = 0.2856.
 // Swapped it would read 1.7136; with the precedence slip (factor * high * 256 + low) 116.9.
-static void golden_angle_frames_of_a_zx200(void **state)
+TEST(golden_angle_frames_of_a_zx200)
 {
-    (void)state;
     struct dig_dbc dbc;
     assert_int_equal(dig_dbc_read("config/can/zx200.dbc", &dbc, NULL), DIG_OK);
     assert_int_equal(dig_dbc_find(&dbc, "Front_Angle")->id, 0x18FF7DE8);
@@ -73,9 +71,8 @@ static void golden_angle_frames_of_a_zx200(void **state)
     dig_dbc_finish(&dbc);
 }
 
-static void motorola_and_signed_signals_are_decoded(void **state)
+TEST(motorola_and_signed_signals_are_decoded)
 {
-    (void)state;
     struct dig_dbc                      dbc = read_good("BO_ 291 M: 8 X\n"
                                                                              " SG_ word : 7|16@0+ (1,0) [0|0] \"\" X\n"
                                                                              " SG_ twelve : 3|12@0+ (1,0) [0|0] \"\" X\n"
@@ -101,9 +98,8 @@ static void motorola_and_signed_signals_are_decoded(void **state)
 }
 
 // The decoder walks bit by bit; the oracle shifts the whole frame as one number of 64 bits.
-static void every_signal_equals_a_shift_of_the_whole_frame(void **state)
+TEST(every_signal_equals_a_shift_of_the_whole_frame)
 {
-    (void)state;
     srand(7);
     for (int trial = 0; trial < 20000; trial++) {
         uint8_t  data[8];
@@ -126,9 +122,8 @@ static void every_signal_equals_a_shift_of_the_whole_frame(void **state)
     }
 }
 
-static void what_is_no_message_is_passed_over(void **state)
+TEST(what_is_no_message_is_passed_over)
 {
-    (void)state;
     struct dig_dbc dbc = read_good("VERSION \"x\"\r\n"
                                    "NS_ :\n\tBA_\n"
                                    "BU_: A B\n"
@@ -155,9 +150,8 @@ static void what_is_no_message_is_passed_over(void **state)
     dig_dbc_finish(&dbc);
 }
 
-static void defects_are_refused_with_file_and_line_and_write_nothing(void **state)
+TEST(defects_are_refused_with_file_and_line_and_write_nothing)
 {
-    (void)state;
     static const struct {
         const char *text, *expected;
     } cases[] = {
@@ -205,9 +199,8 @@ static void put_numbered(FILE *const to, const char *const line, const unsigned 
     }
 }
 
-static void a_database_without_end_is_refused(void **state)
+TEST(a_database_without_end_is_refused)
 {
-    (void)state;
     static const struct {
         const char *head, *line, *says; // the line is written with a number in it
         unsigned    lines, every;       // before so many of them the head is
@@ -238,16 +231,4 @@ static void a_database_without_end_is_refused(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(golden_pressure_frame_of_a_zx200),
-        cmocka_unit_test(golden_angle_frames_of_a_zx200),
-        cmocka_unit_test(motorola_and_signed_signals_are_decoded),
-        cmocka_unit_test(every_signal_equals_a_shift_of_the_whole_frame),
-        cmocka_unit_test(what_is_no_message_is_passed_over),
-        cmocka_unit_test(defects_are_refused_with_file_and_line_and_write_nothing),
-        cmocka_unit_test(a_database_without_end_is_refused),
-    };
-    return cmocka_run_group_tests_name("dbc", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

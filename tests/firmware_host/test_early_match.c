@@ -117,9 +117,8 @@ static int results(struct bench *const b, struct dig_gravel_track *const first,
     return n;
 }
 
-static void a_dig_is_matched_while_it_goes_on(void **state)
+TEST(a_dig_is_matched_while_it_goes_on)
 {
-    (void)state;
     struct bench *const     b = bench_create();
     struct dig_gravel_track first, last;
     dig_until(b, MADE_SIMPLE_A, 0.33, 2.0);
@@ -148,9 +147,8 @@ static void a_dig_is_matched_while_it_goes_on(void **state)
     bench_destroy(b);
 }
 
-static void the_whole_dig_takes_its_place(void **state)
+TEST(the_whole_dig_takes_its_place)
 {
-    (void)state;
     struct bench *const     b = bench_create();
     struct dig_gravel_track first, last;
     dig_until(b, MADE_SIMPLE_A, 1.0, 2.0);
@@ -175,9 +173,8 @@ static void the_whole_dig_takes_its_place(void **state)
     bench_destroy(b);
 }
 
-static void a_dig_with_samples_missing_is_counted_as_unknown(void **state)
+TEST(a_dig_with_samples_missing_is_counted_as_unknown)
 {
-    (void)state;
     struct bench *const b = bench_create();
     dig_until(b, MADE_SIMPLE_A, 1.0, 0.5);
     end_dig(b, MADE_SIMPLE_A, true);
@@ -189,9 +186,8 @@ static void a_dig_with_samples_missing_is_counted_as_unknown(void **state)
     bench_destroy(b);
 }
 
-static void a_dig_broken_off_takes_it_back(void **state)
+TEST(a_dig_broken_off_takes_it_back)
 {
-    (void)state;
     struct bench *const b = bench_create();
     for (int lost = 0; lost < 2; lost++) {
         struct dig_gravel_track first, last;
@@ -214,9 +210,8 @@ static void a_dig_broken_off_takes_it_back(void **state)
 }
 
 // Of what is known from a whole dig nothing changes.
-static void what_is_known_is_still_predicted_from(void **state)
+TEST(what_is_known_is_still_predicted_from)
 {
-    (void)state;
     struct bench *const     b = bench_create();
     struct dig_gravel_track first, last;
     dig_until(b, MADE_SIMPLE_A, 1.0, 2.0);
@@ -237,9 +232,8 @@ static void what_is_known_is_still_predicted_from(void **state)
     bench_destroy(b);
 }
 
-static void what_cannot_identify_is_not_looked_at(void **state)
+TEST(what_cannot_identify_is_not_looked_at)
 {
-    (void)state;
     struct dig_gravel_track first, last;
     for (int c = 0; c < 3; c++) {
         struct bench *const b      = bench_create();
@@ -248,17 +242,4 @@ static void what_cannot_identify_is_not_looked_at(void **state)
         assert_int_equal(results(b, &first, &last), 0);
         bench_destroy(b);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_dig_is_matched_while_it_goes_on),
-        cmocka_unit_test(the_whole_dig_takes_its_place),
-        cmocka_unit_test(a_dig_with_samples_missing_is_counted_as_unknown),
-        cmocka_unit_test(a_dig_broken_off_takes_it_back),
-        cmocka_unit_test(what_is_known_is_still_predicted_from),
-        cmocka_unit_test(what_cannot_identify_is_not_looked_at),
-    };
-    return cmocka_run_group_tests_name("early", tests, NULL, NULL);
 }

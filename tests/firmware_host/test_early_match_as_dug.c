@@ -124,9 +124,8 @@ static double off_Nm(const struct dig_expected *const expected, const struct dig
     return sqrt(sum / (DIG_CURVE_POINTS - 130));
 }
 
-static void a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly(void **state)
+TEST(a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly)
 {
-    (void)state;
     struct bench *const       b      = bench_create();
     const struct dig_approach deep   = { 1.15, 0.0 };
     const struct dig_approach plain  = dig_approach_plain();
@@ -147,9 +146,8 @@ static void a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly(void *
     bench_destroy(b);
 }
 
-static void a_dig_deeper_than_any_of_the_table_is_off_it(void **state)
+TEST(a_dig_deeper_than_any_of_the_table_is_off_it)
 {
-    (void)state;
     struct bench *const b = bench_create();
     dig_until(b, (struct dig_approach){ 1.6, 0.0 }, 0.5);
     const struct dig_expected now = offered(b);
@@ -158,13 +156,4 @@ static void a_dig_deeper_than_any_of_the_table_is_off_it(void **state)
     const struct dig_expected after = offered(b);
     assert_true(after.valid && !after.off_table);
     bench_destroy(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_deep_dig_is_predicted_as_it_is_dug_and_the_next_one_plainly),
-        cmocka_unit_test(a_dig_deeper_than_any_of_the_table_is_off_it),
-    };
-    return cmocka_run_group_tests_name("early_as_dug", tests, NULL, NULL);
 }

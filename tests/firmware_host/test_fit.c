@@ -3,9 +3,8 @@
 
 #include "tests/firmware_host/fit_bench.h"
 
-static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
+TEST(a_simple_dig_identifies_the_gravel_it_was_made_of)
 {
-    (void)state;
     struct bench *const b = bench_create();
     for (int gravel = 0; gravel < GRAVELS; gravel++) {
         struct dig_fit_result result;
@@ -30,9 +29,8 @@ static void a_simple_dig_identifies_the_gravel_it_was_made_of(void **state)
     free(b);
 }
 
-static void a_dig_that_does_not_identify_is_passed_over(void **state)
+TEST(a_dig_that_does_not_identify_is_passed_over)
 {
-    (void)state;
     struct bench *const b = bench_create();
     struct dig_log_line note;
     bench_dig(b, 0, 1, 1.0);
@@ -42,9 +40,8 @@ static void a_dig_that_does_not_identify_is_passed_over(void **state)
     free(b);
 }
 
-static void a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing(void **state)
+TEST(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing)
 {
-    (void)state;
     struct bench *const b = bench_create();
     struct dig_log_line note;
     (void)strcpy(b->config.identify_trajectory[0], "actual");
@@ -56,9 +53,8 @@ static void a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing(void **
     free(b);
 }
 
-static void a_dig_broken_off_leaves_what_is_known(void **state)
+TEST(a_dig_broken_off_leaves_what_is_known)
 {
-    (void)state;
     struct bench *const    b   = bench_create();
     struct dig_observation dig = { .dig_count = 6, .trajectory = 0, .first = 0.0 };
     for (int p = 0; p < DIG_CURVE_POINTS; p++) {
@@ -80,9 +76,8 @@ static void a_dig_broken_off_leaves_what_is_known(void **state)
 }
 
 // Told and counted by how they ended; that a dig was aborted changes nothing of what it tells.
-static void how_digs_ended_is_told_and_changes_no_number(void **state)
+TEST(how_digs_ended_is_told_and_changes_no_number)
 {
-    (void)state;
     struct bench *const    b    = bench_create();
     struct bench *const    same = bench_create();
     struct dig_observation dig  = { .dig_count = 1, .trajectory = 0, .last = 0.7 };
@@ -125,16 +120,4 @@ static void how_digs_ended_is_told_and_changes_no_number(void **state)
     assert_int_equal(atomic_load(&b->fit.count.unknown), 0);
     free(same);
     free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_simple_dig_identifies_the_gravel_it_was_made_of),
-        cmocka_unit_test(a_dig_that_does_not_identify_is_passed_over),
-        cmocka_unit_test(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing),
-        cmocka_unit_test(a_dig_broken_off_leaves_what_is_known),
-        cmocka_unit_test(how_digs_ended_is_told_and_changes_no_number),
-    };
-    return cmocka_run_group_tests_name("fit", tests, NULL, NULL);
 }

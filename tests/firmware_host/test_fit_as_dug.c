@@ -54,9 +54,8 @@ static void dig_deep(struct bench *const b, const size_t gravel, const size_t t,
     dig_fit_take(&b->fit, &dig);
 }
 
-static void digs_of_different_depths_are_matched_together(void **state)
+TEST(digs_of_different_depths_are_matched_together)
 {
-    (void)state;
     struct bench *const b = bench_create();
     dig_deep(b, 5, 0, 0.9, 0.9);
     dig_deep(b, 5, 0, 1.15, 1.15);
@@ -76,9 +75,8 @@ static void digs_of_different_depths_are_matched_together(void **state)
     bench_destroy(b);
 }
 
-static void a_deep_dig_is_no_sign_of_other_ground(void **state)
+TEST(a_deep_dig_is_no_sign_of_other_ground)
 {
-    (void)state;
     struct bench *const b = bench_create();
     dig_deep(b, 2, 0, 1.0, 1.0);
     assert_true(b->fit.track.valid);
@@ -93,9 +91,8 @@ static void a_deep_dig_is_no_sign_of_other_ground(void **state)
 }
 
 // Of the youngest dig; after a restart, too.
-static void how_it_was_made_is_known_with_the_gravel(void **state)
+TEST(how_it_was_made_is_known_with_the_gravel)
 {
-    (void)state;
     struct bench *const b = bench_create(), *const again = bench_create();
     for (int i = 0; i < 2; i++) {
         struct bench *const one = i == 0 ? b : again;
@@ -118,12 +115,4 @@ static void how_it_was_made_is_known_with_the_gravel(void **state)
     bench_destroy(again);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(digs_of_different_depths_are_matched_together),
-        cmocka_unit_test(a_deep_dig_is_no_sign_of_other_ground),
-        cmocka_unit_test(how_it_was_made_is_known_with_the_gravel),
-    };
-    return cmocka_run_group_tests_name("fit_as_dug", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -7,9 +7,8 @@
 
 // Digs that identify nothing watch the ground: as predicted it is the same; two in a row that are
 // not, and it counts as another.
-static void ground_that_changed_is_no_longer_known(void **state)
+TEST(ground_that_changed_is_no_longer_known)
 {
-    (void)state;
     struct bench *const b = bench_of_two_digs();
     bench_dig(b, 3, 0, 1.0);
     assert_true(b->fit.track.valid);
@@ -59,9 +58,8 @@ static double drift_of(struct bench *const b, const int gravel, const double fac
     return drift;
 }
 
-static void simple_digs_of_one_ground_are_matched_together(void **state)
+TEST(simple_digs_of_one_ground_are_matched_together)
 {
-    (void)state;
     struct bench *const b      = bench_create();
     double              before = INFINITY;
     for (int i = 1; i <= 10; i++) {
@@ -79,9 +77,8 @@ static void simple_digs_of_one_ground_are_matched_together(void **state)
 }
 
 // Of several that agreed, one that differs is doubted; the second, or one far off, begins anew.
-static void a_simple_dig_that_differs_is_doubted_first(void **state)
+TEST(a_simple_dig_that_differs_is_doubted_first)
 {
-    (void)state;
     struct bench *const b = bench_of_two_digs();
     for (int i = 0; i < 3; i++) {
         bench_dig(b, 5, 0, 1.0);
@@ -122,9 +119,8 @@ static void a_simple_dig_that_differs_is_doubted_first(void **state)
     free(b);
 }
 
-static void a_ground_given_up_is_not_matched_with_the_next(void **state)
+TEST(a_ground_given_up_is_not_matched_with_the_next)
 {
-    (void)state;
     struct bench *const b = bench_of_two_digs();
     bench_dig(b, 5, 0, 1.0);
     bench_dig(b, 5, 0, 1.0);
@@ -137,9 +133,8 @@ static void a_ground_given_up_is_not_matched_with_the_next(void **state)
     free(b);
 }
 
-static void a_gravel_that_is_too_old_is_no_longer_known(void **state)
+TEST(a_gravel_that_is_too_old_is_no_longer_known)
 {
-    (void)state;
     struct bench *const b           = bench_create();
     b->fit.track_settings.expires_s = 0.05;
     bench_dig(b, 3, 0, 1.0);
@@ -154,16 +149,4 @@ static void a_gravel_that_is_too_old_is_no_longer_known(void **state)
     assert_non_null(basis);
     assert_false(basis->known);
     free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ground_that_changed_is_no_longer_known),
-        cmocka_unit_test(simple_digs_of_one_ground_are_matched_together),
-        cmocka_unit_test(a_simple_dig_that_differs_is_doubted_first),
-        cmocka_unit_test(a_ground_given_up_is_not_matched_with_the_next),
-        cmocka_unit_test(a_gravel_that_is_too_old_is_no_longer_known),
-    };
-    return cmocka_run_group_tests_name("fit_ground", tests, NULL, NULL);
 }

@@ -12,9 +12,8 @@
 
 // A file of a match comes back as that match; another table's, an old one or a damaged one does
 // not.
-static void what_is_known_survives_in_its_file(void **state)
+TEST(what_is_known_survives_in_its_file)
 {
-    (void)state;
     struct bench *const b = bench_create();
     (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
                    scratch_path("match.json"));
@@ -73,9 +72,8 @@ static void what_is_known_survives_in_its_file(void **state)
 }
 
 // Which axes were not told is no field of the file: the interval says it, and the table's axes.
-static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
+TEST(what_was_not_told_is_not_told_after_a_restart_either)
 {
-    (void)state;
     struct bench *const b     = bench_create();
     struct bench *const again = bench_create();
     (void)snprintf(again->config.match_state.text, sizeof again->config.match_state.text, "%s",
@@ -110,9 +108,8 @@ static void what_was_not_told_is_not_told_after_a_restart_either(void **state)
 }
 
 // After a restart the digs before still count; from a file without them the next begins anew.
-static void the_digs_of_a_ground_survive_too(void **state)
+TEST(the_digs_of_a_ground_survive_too)
 {
-    (void)state;
     struct bench *const b = bench_create();
     (void)snprintf(b->config.match_state.text, sizeof b->config.match_state.text, "%s",
                    scratch_path("pool.json"));
@@ -178,9 +175,8 @@ static void dig_with_forces_in(struct bench *const b, const int gravel, const do
 }
 
 // What comes after a restart is matched with the forces of what was before it.
-static void the_forces_of_a_ground_survive_too(void **state)
+TEST(the_forces_of_a_ground_survive_too)
 {
-    (void)state;
     struct bench *const b = bench_create(), *const again = bench_create();
     for (int i = 0; i < 2; i++) {
         struct bench *const one = i == 0 ? b : again;
@@ -224,9 +220,8 @@ static void the_forces_of_a_ground_survive_too(void **state)
     free(again);
 }
 
-static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **state)
+TEST(a_file_that_cannot_be_written_is_said_and_the_match_stands)
 {
-    (void)state;
     struct bench *const b = bench_create();
     (void)strcpy(b->config.match_state.text, "/dev/full");
     bench_dig(b, 6, 0, 1.0);
@@ -237,14 +232,4 @@ static void a_file_that_cannot_be_written_is_said_and_the_match_stands(void **st
     free(b);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_known_survives_in_its_file),
-        cmocka_unit_test(what_was_not_told_is_not_told_after_a_restart_either),
-        cmocka_unit_test(the_digs_of_a_ground_survive_too),
-        cmocka_unit_test(the_forces_of_a_ground_survive_too),
-        cmocka_unit_test(a_file_that_cannot_be_written_is_said_and_the_match_stands),
-    };
-    return cmocka_run_group_tests_name("fit_state", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

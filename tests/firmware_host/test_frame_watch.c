@@ -9,9 +9,8 @@
 static const struct dig_frame_settings counted = { .counter_mod = 16 };
 static const struct dig_frame_settings cyclic  = { .cycle_s = 0.010 };
 
-static void a_counter_that_skips_tells_how_many_were_missed(void **state)
+TEST(a_counter_that_skips_tells_how_many_were_missed)
 {
-    (void)state;
     struct dig_frame_watch w         = { 0 };
     const uint64_t         counter[] = { 3, 4, 6, 9, 15, 0, 1, 4 };
     for (int i = 0; i < 8; i++) {
@@ -21,9 +20,8 @@ static void a_counter_that_skips_tells_how_many_were_missed(void **state)
     assert_int_equal(w.repeated, 0);
 }
 
-static void a_frame_again_or_from_before_is_dropped(void **state)
+TEST(a_frame_again_or_from_before_is_dropped)
 {
-    (void)state;
     struct dig_frame_watch w = { 0 };
     assert_true(dig_frame_watch_take(&w, &counted, 0, 7));
     assert_false(dig_frame_watch_take(&w, &counted, 1 * MS, 7));
@@ -35,9 +33,8 @@ static void a_frame_again_or_from_before_is_dropped(void **state)
 }
 
 // Every tenth frame lost, with jitter of a third of the cycle and a clock 100 ppm fast.
-static void a_cycle_tells_what_did_not_come(void **state)
+TEST(a_cycle_tells_what_did_not_come)
 {
-    (void)state;
     struct dig_frame_watch w    = { 0 };
     int                    lost = 0;
     for (int64_t i = 0; i < 10000; i++) {
@@ -52,9 +49,8 @@ static void a_cycle_tells_what_did_not_come(void **state)
 }
 
 // A host that stalls delivers late but all: nothing was missed.
-static void a_burst_after_a_pause_pays_back(void **state)
+TEST(a_burst_after_a_pause_pays_back)
 {
-    (void)state;
     struct dig_frame_watch w = { 0 };
     for (int64_t i = 0; i < 3000; i++) {
         const int64_t due_ns  = i * 10 * MS;
@@ -65,25 +61,12 @@ static void a_burst_after_a_pause_pays_back(void **state)
     assert_int_equal(w.missed, 0);
 }
 
-static void without_counter_and_cycle_all_frames_are_taken(void **state)
+TEST(without_counter_and_cycle_all_frames_are_taken)
 {
-    (void)state;
     struct dig_frame_watch          w       = { 0 };
     const struct dig_frame_settings nothing = { 0 };
     for (int64_t i = 0; i < 10; i++) {
         assert_true(dig_frame_watch_take(&w, &nothing, i % 3 * MS, (uint64_t)i % 2));
     }
     assert_int_equal(w.missed + w.repeated, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_counter_that_skips_tells_how_many_were_missed),
-        cmocka_unit_test(a_frame_again_or_from_before_is_dropped),
-        cmocka_unit_test(a_cycle_tells_what_did_not_come),
-        cmocka_unit_test(a_burst_after_a_pause_pays_back),
-        cmocka_unit_test(without_counter_and_cycle_all_frames_are_taken),
-    };
-    return cmocka_run_group_tests_name("frame_watch", tests, NULL, NULL);
 }

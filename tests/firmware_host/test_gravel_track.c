@@ -4,9 +4,8 @@
 #include "tests/firmware_host/fit_bench.h"
 
 // Energy per kilogram: the bucket that is filled with less work wins, unless it carries too little.
-static void the_hint_is_the_dig_that_carries_for_the_least_energy(void **state)
+TEST(the_hint_is_the_dig_that_carries_for_the_least_energy)
 {
-    (void)state;
     struct bench *const  b          = bench_create();
     struct dig_forecast *f          = calloc(1, sizeof *f);
     double               J_per_kg   = -1.0;
@@ -27,12 +26,4 @@ static void the_hint_is_the_dig_that_carries_for_the_least_energy(void **state)
     assert_int_equal(dig_gravel_track_hint(&b->cube.set, f, 10.0, &J_per_kg), -1);
     free(f);
     free(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_hint_is_the_dig_that_carries_for_the_least_energy),
-    };
-    return cmocka_run_group_tests_name("known", tests, NULL, NULL);
 }

@@ -34,9 +34,8 @@ static bool is_whole(const struct record *const r)
     return true;
 }
 
-static void a_ring_gives_back_in_order_and_says_full_and_empty(void **state)
+TEST(a_ring_gives_back_in_order_and_says_full_and_empty)
 {
-    (void)state;
     int             memory[4];
     struct dig_ring ring;
     dig_ring_init(&ring, sizeof memory[0], 4, memory);
@@ -57,9 +56,8 @@ static void a_ring_gives_back_in_order_and_says_full_and_empty(void **state)
     }
 }
 
-static void a_ring_survives_its_counters_running_over(void **state)
+TEST(a_ring_survives_its_counters_running_over)
 {
-    (void)state;
     int             memory[4];
     struct dig_ring ring;
     dig_ring_init(&ring, sizeof memory[0], 4, memory);
@@ -77,9 +75,8 @@ static void a_ring_survives_its_counters_running_over(void **state)
     }
 }
 
-static void a_slot_gives_the_latest_once(void **state)
+TEST(a_slot_gives_the_latest_once)
 {
-    (void)state;
     int               memory[3];
     struct dig_latest latest;
     dig_latest_init(&latest, sizeof memory[0], memory);
@@ -117,9 +114,8 @@ static void *push_all(void *const context)
     return NULL;
 }
 
-static void between_threads_a_ring_loses_repeats_and_tears_nothing(void **state)
+TEST(between_threads_a_ring_loses_repeats_and_tears_nothing)
 {
-    (void)state;
     static struct record memory[8];
     struct dig_ring      ring;
     dig_ring_init(&ring, sizeof memory[0], 8, memory);
@@ -150,9 +146,8 @@ static void *put_all(void *const context)
     return NULL;
 }
 
-static void between_threads_a_slot_only_moves_on_and_tears_nothing(void **state)
+TEST(between_threads_a_slot_only_moves_on_and_tears_nothing)
 {
-    (void)state;
     static struct record memory[3];
     struct dig_latest    latest;
     dig_latest_init(&latest, sizeof memory[0], memory);
@@ -170,9 +165,8 @@ static void between_threads_a_slot_only_moves_on_and_tears_nothing(void **state)
     assert_int_equal(pthread_join(producer, NULL), 0);
 }
 
-static void what_is_looked_at_stays_until_the_next_look(void **state)
+TEST(what_is_looked_at_stays_until_the_next_look)
 {
-    (void)state;
     int               memory[3];
     struct dig_latest latest;
     dig_latest_init(&latest, sizeof memory[0], memory);
@@ -190,17 +184,4 @@ static void what_is_looked_at_stays_until_the_next_look(void **state)
         assert_int_equal(*next, i + 2);
         assert_null(dig_latest_look(&latest));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_looked_at_stays_until_the_next_look),
-        cmocka_unit_test(a_ring_gives_back_in_order_and_says_full_and_empty),
-        cmocka_unit_test(a_ring_survives_its_counters_running_over),
-        cmocka_unit_test(a_slot_gives_the_latest_once),
-        cmocka_unit_test(between_threads_a_ring_loses_repeats_and_tears_nothing),
-        cmocka_unit_test(between_threads_a_slot_only_moves_on_and_tears_nothing),
-    };
-    return cmocka_run_group_tests_name("handoff", tests, NULL, NULL);
 }

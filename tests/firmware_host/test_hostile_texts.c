@@ -109,9 +109,8 @@ static char *written(void (*const put)(FILE *, const char *), const char *const 
     return bytes;
 }
 
-static void pages_hold_no_markup_of_a_text(void **state)
+TEST(pages_hold_no_markup_of_a_text)
 {
-    (void)state;
     for (size_t i = 0; i < TEXTS; i++) {
         char *const html = written(dig_html_text, hostile[i]);
         assert_printable(html);
@@ -128,9 +127,8 @@ static void pages_hold_no_markup_of_a_text(void **state)
     }
 }
 
-static void json_strings_come_back(void **state)
+TEST(json_strings_come_back)
 {
-    (void)state;
     for (size_t i = 0; i < TEXTS; i++) {
         char *const      json = written(dig_text_put_json, hostile[i]);
         yaml_document_t  document;
@@ -149,9 +147,8 @@ static void json_strings_come_back(void **state)
     }
 }
 
-static void a_model_with_such_texts_is_read_back_and_one_with_such_names_is_not(void **state)
+TEST(a_model_with_such_texts_is_read_back_and_one_with_such_names_is_not)
 {
-    (void)state;
     for (size_t i = 0; i < TEXTS; i++) {
         static struct dig_model model, back;
         struct dig_error        error = { "" };
@@ -180,9 +177,8 @@ static void a_model_with_such_texts_is_read_back_and_one_with_such_names_is_not(
     }
 }
 
-static void a_scene_with_such_a_name_is_no_scene_and_no_table(void **state)
+TEST(a_scene_with_such_a_name_is_no_scene_and_no_table)
 {
-    (void)state;
     size_t      size  = 0;
     char *const whole = scratch_read("tests/data/formats/scene.yaml", &size);
     for (size_t i = 0; i < TEXTS; i++) {
@@ -212,9 +208,8 @@ static void a_scene_with_such_a_name_is_no_scene_and_no_table(void **state)
     free(whole);
 }
 
-static void no_run_with_such_an_engine_is_stored_for_an_export_to_print(void **state)
+TEST(no_run_with_such_an_engine_is_stored_for_an_export_to_print)
 {
-    (void)state;
     struct dig_store *const    store     = fixture_create("runs.sqlite");
     const struct dig_recording recording = fixture_recording(400, 1.0);
     for (size_t i = 0; i < TEXTS; i++) {
@@ -230,9 +225,8 @@ static void no_run_with_such_an_engine_is_stored_for_an_export_to_print(void **s
     dig_store_close(store);
 }
 
-static void a_shell_line_is_one_printable_word(void **state)
+TEST(a_shell_line_is_one_printable_word)
 {
-    (void)state;
     for (size_t i = 0; i < TEXTS; i++) {
         char word[8192];
         assert_true(dig_shell_word(hostile[i], sizeof word, word) < sizeof word);
@@ -240,9 +234,8 @@ static void a_shell_line_is_one_printable_word(void **state)
     }
 }
 
-static void a_terminal_gets_one_line_without_escape_sequences(void **state)
+TEST(a_terminal_gets_one_line_without_escape_sequences)
 {
-    (void)state;
     for (size_t i = 0; i < TEXTS; i++) {
         struct dig_error error = { "" };
         char *const      line  = written(dig_text_put, hostile[i]);
@@ -262,9 +255,8 @@ static void on_health(void *const context, const int64_t time_us, const digsight
     ++*(size_t *)context;
 }
 
-static void what_the_daemon_publishes_is_printable(void **state)
+TEST(what_the_daemon_publishes_is_printable)
 {
-    (void)state;
     char url[600];
     (void)snprintf(url, sizeof url, "file://%s?mode=w", scratch_path("health.lcm"));
     struct dig_output *output = NULL;
@@ -282,17 +274,4 @@ static void what_the_daemon_publishes_is_printable(void **state)
     assert_int_equal(seen, TEXTS);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pages_hold_no_markup_of_a_text),
-        cmocka_unit_test(json_strings_come_back),
-        cmocka_unit_test(a_model_with_such_texts_is_read_back_and_one_with_such_names_is_not),
-        cmocka_unit_test(a_scene_with_such_a_name_is_no_scene_and_no_table),
-        cmocka_unit_test(no_run_with_such_an_engine_is_stored_for_an_export_to_print),
-        cmocka_unit_test(a_shell_line_is_one_printable_word),
-        cmocka_unit_test(a_terminal_gets_one_line_without_escape_sequences),
-        cmocka_unit_test(what_the_daemon_publishes_is_printable),
-    };
-    return cmocka_run_group_tests_name("hostile texts", tests, setup, scratch_teardown);
-}
+TESTS_WITH(setup, scratch_teardown)

@@ -57,9 +57,8 @@ static bool next_note(struct dig_log_line *const note)
     return false;
 }
 
-static void the_block_is_polled_and_decoded_with_reads_only(void **state)
+TEST_WITH(the_block_is_polled_and_decoded_with_reads_only, open_server, NULL)
 {
-    (void)state;
     client_start();
     struct dig_reading reading;
     for (int i = 0; i < 20; i++) {
@@ -77,9 +76,8 @@ static void the_block_is_polled_and_decoded_with_reads_only(void **state)
     assert_int_equal(atomic_load(&c.input.reconnects), 0);
 }
 
-static void a_server_that_comes_late_is_found_and_said(void **state)
+TEST(a_server_that_comes_late_is_found_and_said)
 {
-    (void)state;
     s = (struct modbus_server){ 0 };
     modbus_server_bind(&s); // not listening: refused
     client_start();
@@ -95,9 +93,8 @@ static void a_server_that_comes_late_is_found_and_said(void **state)
     stop();
 }
 
-static void a_connection_that_breaks_is_made_anew(void **state)
+TEST_WITH(a_connection_that_breaks_is_made_anew, open_server, NULL)
 {
-    (void)state;
     client_start();
     struct dig_reading reading;
     assert_true(next_reading(&c, &reading));
@@ -112,9 +109,8 @@ static void a_connection_that_breaks_is_made_anew(void **state)
 }
 
 // Each byte comes in time, the last of them when the first registers are long past.
-static void an_answer_that_dawdles_is_not_taken_for_the_present(void **state)
+TEST_WITH(an_answer_that_dawdles_is_not_taken_for_the_present, open_server, NULL)
 {
-    (void)state;
     atomic_store(&s.slow_ms, 10); // a third of a second in all
     client_start();
     while (atomic_load(&c.input.timeouts) == 0 && atomic_load(&c.input.frames) == 0) {
@@ -126,9 +122,8 @@ static void an_answer_that_dawdles_is_not_taken_for_the_present(void **state)
     modbus_server_stop(&s);
 }
 
-static void a_refusal_is_counted_and_borne(void **state)
+TEST_WITH(a_refusal_is_counted_and_borne, open_server, NULL)
 {
-    (void)state;
     client_start();
     struct dig_reading reading;
     assert_true(next_reading(&c, &reading));
@@ -174,9 +169,8 @@ static void count_blocks(const unsigned block, const int until, int came[const 3
     }
 }
 
-static void blocks_that_lie_apart_are_asked_for_each_at_its_rate(void **state)
+TEST_WITH(blocks_that_lie_apart_are_asked_for_each_at_its_rate, open_server, NULL)
 {
-    (void)state;
     client_start_with(scratch_write("far.yaml", far_map), 0.02);
     int came[3] = { 0 };
     count_blocks(1, 10, came);
@@ -192,9 +186,8 @@ static void blocks_that_lie_apart_are_asked_for_each_at_its_rate(void **state)
     assert_int_equal(atomic_load(&s.connections), 1);
 }
 
-static void a_block_that_is_refused_is_done_without_or_ends_the_connection(void **state)
+TEST_WITH(a_block_that_is_refused_is_done_without_or_ends_the_connection, open_server, NULL)
 {
-    (void)state;
     atomic_store(&s.refused, 1011); // the temperature
     client_start_with(scratch_write("far.yaml", far_map), 0.02);
     int came[3] = { 0 };
@@ -218,9 +211,8 @@ static void a_block_that_is_refused_is_done_without_or_ends_the_connection(void 
 
 // The boom's pressures tell only the force: while they are refused the rest comes, and they come
 // again when they are not.
-static void a_block_of_force_alone_is_done_without_until_it_is_back(void **state)
+TEST_WITH(a_block_of_force_alone_is_done_without_until_it_is_back, open_server, NULL)
 {
-    (void)state;
     static const char map[] =
         "kind: modbus\n"
         "blocks:\n"
@@ -258,9 +250,8 @@ static double now_s(void)
 
 // A block without an answer costs the others 200 ms each time: after three times it is asked once
 // in five seconds, and said to be silent; the others go on. Then it is back.
-static void a_silent_block_is_asked_less_and_less_while_others_answer(void **state)
+TEST_WITH(a_silent_block_is_asked_less_and_less_while_others_answer, open_server, NULL)
 {
-    (void)state;
     atomic_store(&s.muted, 1011); // the temperature, due twice a second
     client_start_with(scratch_write("far.yaml", far_map), 0.02);
     int                 came[3] = { 0 };
@@ -291,9 +282,8 @@ static void a_silent_block_is_asked_less_and_less_while_others_answer(void **sta
     assert_int_equal(atomic_load(&c.input.reconnects), 0);
 }
 
-static void what_cannot_be_polled_is_refused(void **state)
+TEST(what_cannot_be_polled_is_refused)
 {
-    (void)state;
     struct dig_signal_map           can     = { .kind = DIG_MAP_CAN };
     const struct dig_modbus_address address = { .host = "127.0.0.1", .port = 1, .poll_s = 0.01 };
     struct dig_input                input   = { 0 };
@@ -302,24 +292,4 @@ static void what_cannot_be_polled_is_refused(void **state)
     can.kind                              = DIG_MAP_MODBUS;
     assert_int_equal(dig_input_modbus_create(&input, &never, &can), DIG_EINVAL);
     assert_null(input.ops);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_block_is_polled_and_decoded_with_reads_only, open_server),
-        cmocka_unit_test(a_server_that_comes_late_is_found_and_said),
-        cmocka_unit_test_setup(a_connection_that_breaks_is_made_anew, open_server),
-        cmocka_unit_test_setup(an_answer_that_dawdles_is_not_taken_for_the_present, open_server),
-        cmocka_unit_test_setup(a_refusal_is_counted_and_borne, open_server),
-        cmocka_unit_test_setup(blocks_that_lie_apart_are_asked_for_each_at_its_rate, open_server),
-        cmocka_unit_test_setup(a_block_that_is_refused_is_done_without_or_ends_the_connection,
-                               open_server),
-        cmocka_unit_test_setup(a_block_of_force_alone_is_done_without_until_it_is_back,
-                               open_server),
-        cmocka_unit_test_setup(a_silent_block_is_asked_less_and_less_while_others_answer,
-                               open_server),
-        cmocka_unit_test(what_cannot_be_polled_is_refused),
-    };
-    return cmocka_run_group_tests_name("input_modbus", tests, NULL, NULL);
 }

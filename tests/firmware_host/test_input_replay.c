@@ -26,9 +26,8 @@ static struct dig_machine_recording recording(void)
     return r;
 }
 
-static void every_line_is_played_once_at_its_time(void **state)
+TEST(every_line_is_played_once_at_its_time)
 {
-    (void)state;
     static struct dig_reading    memory[64];
     static struct dig_log_line   notes_memory[3];
     struct dig_ring              ring;
@@ -63,9 +62,8 @@ static void every_line_is_played_once_at_its_time(void **state)
     dig_input_destroy(&input);
 }
 
-static void a_replay_can_be_stopped(void **state)
+TEST(a_replay_can_be_stopped)
 {
-    (void)state;
     static struct dig_log_line   notes_memory[3];
     static struct dig_reading    memory[64];
     struct dig_ring              ring;
@@ -82,9 +80,8 @@ static void a_replay_can_be_stopped(void **state)
     dig_input_destroy(&input);
 }
 
-static void what_cannot_be_played_is_refused_and_stays_the_callers(void **state)
+TEST(what_cannot_be_played_is_refused_and_stays_the_callers)
 {
-    (void)state;
     struct dig_machine_recording r = recording(), empty = { 0 };
     struct dig_input             input = { 0 };
     assert_int_equal(dig_input_replay_create(&input, &r, "r.csv", 0.0), DIG_EINVAL);
@@ -93,14 +90,4 @@ static void what_cannot_be_played_is_refused_and_stays_the_callers(void **state)
     assert_null(input.ops);
     assert_int_equal(r.rows, ROWS);
     dig_machine_recording_finish(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_line_is_played_once_at_its_time),
-        cmocka_unit_test(a_replay_can_be_stopped),
-        cmocka_unit_test(what_cannot_be_played_is_refused_and_stays_the_callers),
-    };
-    return cmocka_run_group_tests_name("input_replay", tests, NULL, NULL);
 }

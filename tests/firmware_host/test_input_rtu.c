@@ -101,9 +101,8 @@ static double next_boom_kPa(void)
     return reading.value[DIG_SIGNAL_BOOM_HEAD_Pa] * 1e-3;
 }
 
-static void an_answer_is_decoded(void **state)
+TEST_WITH(an_answer_is_decoded, open_line, close_line)
 {
-    (void)state;
     client_run(&c);
     for (unsigned i = 0; i < 5; i++) {
         hear();
@@ -113,9 +112,8 @@ static void an_answer_is_decoded(void **state)
     assert_int_equal(atomic_load(&c.input.malformed), 0);
 }
 
-static void what_lay_on_the_line_before_it_was_asked_is_no_answer(void **state)
+TEST_WITH(what_lay_on_the_line_before_it_was_asked_is_no_answer, open_line, close_line)
 {
-    (void)state;
     say(1000);
     say(1001);
     client_run(&c);
@@ -126,9 +124,8 @@ static void what_lay_on_the_line_before_it_was_asked_is_no_answer(void **state)
 
 // A gateway that hangs for a while and then answers all it was asked: each of its answers is older
 // than the question it would be taken for.
-static void answers_that_come_too_late_are_not_taken_for_later_ones(void **state)
+TEST_WITH(answers_that_come_too_late_are_not_taken_for_later_ones, open_line, close_line)
 {
-    (void)state;
     client_run(&c);
     hear(); // no answer to these two
     hear();
@@ -145,9 +142,8 @@ static void answers_that_come_too_late_are_not_taken_for_later_ones(void **state
     assert_int_equal(atomic_load(&c.input.malformed), 1);
 }
 
-static void the_answer_after_a_damaged_one_is_not_believed(void **state)
+TEST_WITH(the_answer_after_a_damaged_one_is_not_believed, open_line, close_line)
 {
-    (void)state;
     static const uint8_t rubbish[] = { 1, 4, 2, 0xAA, 0x55, 0, 0 };
     client_run(&c);
     hear();
@@ -160,9 +156,8 @@ static void the_answer_after_a_damaged_one_is_not_believed(void **state)
     assert_int_equal(atomic_load(&c.input.malformed), 2);
 }
 
-static void a_refusal_is_an_answer_and_the_next_one_is_believed(void **state)
+TEST_WITH(a_refusal_is_an_answer_and_the_next_one_is_believed, open_line, close_line)
 {
-    (void)state;
     uint8_t        busy[5] = { 1, 0x84, 6 };
     const uint16_t crc     = crc16(busy, 3);
     busy[3]                = (uint8_t)(crc & 0xFF);
@@ -174,20 +169,4 @@ static void a_refusal_is_an_answer_and_the_next_one_is_believed(void **state)
     say(8000);
     assert_close(next_boom_kPa(), 8000.0, 1e-6);
     assert_int_equal(atomic_load(&c.input.malformed), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(an_answer_is_decoded, open_line, close_line),
-        cmocka_unit_test_setup_teardown(what_lay_on_the_line_before_it_was_asked_is_no_answer,
-                                        open_line, close_line),
-        cmocka_unit_test_setup_teardown(answers_that_come_too_late_are_not_taken_for_later_ones,
-                                        open_line, close_line),
-        cmocka_unit_test_setup_teardown(the_answer_after_a_damaged_one_is_not_believed, open_line,
-                                        close_line),
-        cmocka_unit_test_setup_teardown(a_refusal_is_an_answer_and_the_next_one_is_believed,
-                                        open_line, close_line),
-    };
-    return cmocka_run_group_tests_name("input_rtu", tests, NULL, NULL);
 }

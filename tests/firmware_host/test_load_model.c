@@ -70,9 +70,8 @@ static void apply(const struct dig_model *const model, const char *const name,
     assert_false(corrects);
 }
 
-static void digs_made_otherwise_change_as_the_plain_ones_do(void **state)
+TEST(digs_made_otherwise_change_as_the_plain_ones_do)
 {
-    (void)state;
     struct dig_curve_set *const set   = make_table("ways.sqlite");
     struct dig_model            model = model_of(set);
     model.unlisted                    = calloc(1, sizeof *model.unlisted);
@@ -105,9 +104,8 @@ static void digs_made_otherwise_change_as_the_plain_ones_do(void **state)
 
 // Ground that resists less the slower it is dug takes a quarter of each curve of this table: of one
 // that rises it takes more in its end.
-static void each_changes_with_its_own_gravel(void **state)
+TEST(each_changes_with_its_own_gravel)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("rise.sqlite");
     put(store, .3, dig_approach_plain(), 1.0);
     put(store, .3, turned, 3.0);
@@ -140,11 +138,4 @@ static void each_changes_with_its_own_gravel(void **state)
     dig_curve_set_destroy(set);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(digs_made_otherwise_change_as_the_plain_ones_do),
-        cmocka_unit_test(each_changes_with_its_own_gravel),
-    };
-    return cmocka_run_group_tests_name("load_model", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

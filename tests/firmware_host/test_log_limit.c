@@ -8,9 +8,8 @@
 
 #define SECOND_ns 1000000000LL
 
-static void a_burst_is_said_and_then_a_line_a_second(void **state)
+TEST(a_burst_is_said_and_then_a_line_a_second)
 {
-    (void)state;
     struct dig_log_limit talk = { .held = 0 };
     const int64_t        at   = 5000 * SECOND_ns;
     int                  said = 0;
@@ -28,9 +27,8 @@ static void a_burst_is_said_and_then_a_line_a_second(void **state)
 
 // Lines at random times: in no span of time are there more than the burst and one a second, and
 // each is said or counted.
-static void no_span_of_time_has_more_lines_than_that(void **state)
+TEST(no_span_of_time_has_more_lines_than_that)
 {
-    (void)state;
     enum { LINES = 4000 };
     static int64_t       said_ns[LINES];
     struct dig_log_limit talk   = { .held = 0 };
@@ -56,9 +54,8 @@ static void no_span_of_time_has_more_lines_than_that(void **state)
     assert_true(said > 1500); // and what comes now and then is said
 }
 
-static void what_was_held_back_is_spoken_of_when_the_flood_is_over(void **state)
+TEST(what_was_held_back_is_spoken_of_when_the_flood_is_over)
 {
-    (void)state;
     struct dig_log_limit talk = { .held = 0 };
     for (int i = 0; i < 25; i++) {
         (void)dig_log_limit_allows(&talk, 100 * SECOND_ns);
@@ -70,14 +67,4 @@ static void what_was_held_back_is_spoken_of_when_the_flood_is_over(void **state)
         (void)dig_log_limit_allows(&talk, 200 * SECOND_ns);
     }
     assert_int_equal(dig_log_limit_held_before(&talk, 200 * SECOND_ns, true), 5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_burst_is_said_and_then_a_line_a_second),
-        cmocka_unit_test(no_span_of_time_has_more_lines_than_that),
-        cmocka_unit_test(what_was_held_back_is_spoken_of_when_the_flood_is_over),
-    };
-    return cmocka_run_group_tests_name("talk", tests, NULL, NULL);
 }

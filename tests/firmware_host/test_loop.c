@@ -8,9 +8,8 @@
 #include <pthread.h>
 #include <time.h>
 
-static void a_whole_sample_becomes_an_estimate(void **state)
+TEST(a_whole_sample_becomes_an_estimate)
 {
-    (void)state;
     struct bench *const      b = bench_create();
     const struct dig_reading r = bench_still(1000 * MS);
     struct dig_record        record;
@@ -29,9 +28,8 @@ static void a_whole_sample_becomes_an_estimate(void **state)
 }
 
 // For who looks at the dig going on; when he does not keep up, nothing is counted as lost.
-static void each_estimate_is_shared_and_none_waited_for(void **state)
+TEST(each_estimate_is_shared_and_none_waited_for)
 {
-    (void)state;
     struct bench *const b = bench_create();
     struct dig_estimate estimate;
     for (int64_t i = 0; i < 11; i++) {
@@ -53,9 +51,8 @@ static void each_estimate_is_shared_and_none_waited_for(void **state)
     bench_destroy(b);
 }
 
-static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
+TEST(a_sample_with_a_hole_is_passed_on_without_an_estimate)
 {
-    (void)state;
     struct bench *const b = bench_create();
     struct dig_reading  r = bench_still(1000 * MS);
 
@@ -72,9 +69,8 @@ static void a_sample_with_a_hole_is_passed_on_without_an_estimate(void **state)
     bench_destroy(b);
 }
 
-static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void **state)
+TEST(without_a_pressure_of_the_arms_the_moment_is_told_and_no_force)
 {
-    (void)state;
     struct bench *const b           = bench_create();
     struct dig_reading  r           = bench_still(1000 * MS);
     r.state[DIG_SIGNAL_ARM_HEAD_Pa] = DIG_READING_ABSENT;
@@ -91,9 +87,8 @@ static void without_a_pressure_of_the_arms_the_moment_is_told_and_no_force(void 
     bench_destroy(b);
 }
 
-static void silence_is_missing_after_the_stale_time_only(void **state)
+TEST(silence_is_missing_after_the_stale_time_only)
 {
-    (void)state;
     struct bench *const b = bench_create();
     dig_loop_tick(&b->loop, 995 * MS);
     assert_int_equal(bench_tick_status(b).missing, 1);
@@ -107,9 +102,8 @@ static void silence_is_missing_after_the_stale_time_only(void **state)
     bench_destroy(b);
 }
 
-static void a_publisher_that_does_not_keep_up_is_counted_not_waited_for(void **state)
+TEST(a_publisher_that_does_not_keep_up_is_counted_not_waited_for)
 {
-    (void)state;
     struct bench *const b = bench_create();
     for (int64_t i = 0; i < 1100; i++) {
         const struct dig_reading r = bench_still(1000 * MS + i * 5 * MS);
@@ -120,9 +114,8 @@ static void a_publisher_that_does_not_keep_up_is_counted_not_waited_for(void **s
     bench_destroy(b);
 }
 
-static void one_tick_takes_a_bounded_number_of_readings(void **state)
+TEST(one_tick_takes_a_bounded_number_of_readings)
 {
-    (void)state;
     struct bench *const b = bench_create();
     for (int64_t i = 0; i < DIG_READINGS_PER_TICK + 10; i++) {
         const struct dig_reading r = bench_still(1000 * MS + i * MS);
@@ -143,9 +136,8 @@ static void one_tick_takes_a_bounded_number_of_readings(void **state)
     bench_destroy(b);
 }
 
-static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void **state)
+TEST(in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known)
 {
-    (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
     assert_int_equal(outlooks_in_the_air(b, 1000, seen), 0);
@@ -157,9 +149,8 @@ static void in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known(void
     bench_destroy(b);
 }
 
-static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
+TEST(nothing_is_predicted_from_a_gravel_that_expired)
 {
-    (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
     bench_set_basis(b, &b->wires.basis, 3, 1, 2000 * MS);
@@ -168,9 +159,8 @@ static void nothing_is_predicted_from_a_gravel_that_expired(void **state)
     bench_destroy(b);
 }
 
-static void a_tick_allocates_nothing(void **state)
+TEST(a_tick_allocates_nothing)
 {
-    (void)state;
     skip_unless_allocations_count();
     struct bench *const b = bench_create();
     bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
@@ -216,9 +206,8 @@ static void *run_main(void *const context)
 
 // The whole loop beside a producer and a consumer, for ThreadSanitizer; its pace only roughly,
 // since tests run on busy machines.
-static void the_loop_runs_beside_its_neighbours(void **state)
+TEST(the_loop_runs_beside_its_neighbours)
 {
-    (void)state;
     struct run run = { .bench = bench_create() };
     pthread_t  thread;
     assert_int_equal(pthread_create(&thread, NULL, run_main, &run), 0);
@@ -243,22 +232,4 @@ static void the_loop_runs_beside_its_neighbours(void **state)
     assert_in_range(tick_status.ticks, 10, 1000);
     assert_true(tick_status.worst_tick_us > 0.0);
     bench_destroy(run.bench);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_whole_sample_becomes_an_estimate),
-        cmocka_unit_test(each_estimate_is_shared_and_none_waited_for),
-        cmocka_unit_test(a_sample_with_a_hole_is_passed_on_without_an_estimate),
-        cmocka_unit_test(without_a_pressure_of_the_arms_the_moment_is_told_and_no_force),
-        cmocka_unit_test(silence_is_missing_after_the_stale_time_only),
-        cmocka_unit_test(a_publisher_that_does_not_keep_up_is_counted_not_waited_for),
-        cmocka_unit_test(one_tick_takes_a_bounded_number_of_readings),
-        cmocka_unit_test(in_the_air_each_dig_is_predicted_whole_once_the_gravel_is_known),
-        cmocka_unit_test(nothing_is_predicted_from_a_gravel_that_expired),
-        cmocka_unit_test(a_tick_allocates_nothing),
-        cmocka_unit_test(the_loop_runs_beside_its_neighbours),
-    };
-    return cmocka_run_group_tests_name("loop", tests, NULL, NULL);
 }

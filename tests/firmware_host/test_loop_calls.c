@@ -157,9 +157,8 @@ static void *run_main(void *const context)
     return NULL;
 }
 
-static void each_call_is_counted(void **state)
+TEST(each_call_is_counted)
 {
-    (void)state;
     const struct calls before    = calls;
     void *volatile memory        = malloc(1);
     pthread_mutex_t mutex        = PTHREAD_MUTEX_INITIALIZER;
@@ -180,9 +179,8 @@ static void each_call_is_counted(void **state)
 
 // The daemon's loop as it stands, for a second: digs that begin and end, gravels and tables that
 // are offered, memory that comes and goes, a publisher that does not always keep up.
-static void the_running_loop_takes_no_memory_no_lock_and_says_nothing(void **state)
+TEST(the_running_loop_takes_no_memory_no_lock_and_says_nothing)
 {
-    (void)state;
     static struct run run;
     run                     = (struct run){ .bench = bench_create() };
     struct bench *const b   = run.bench;
@@ -236,13 +234,4 @@ static void the_running_loop_takes_no_memory_no_lock_and_says_nothing(void **sta
     assert_true(b->loop.tick_status.ticks > 50);
     assert_true(b->loop.tick_status.generation > 2);
     bench_destroy(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_call_is_counted),
-        cmocka_unit_test(the_running_loop_takes_no_memory_no_lock_and_says_nothing),
-    };
-    return cmocka_run_group_tests_name("loop_calls", tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static double peak_told_of(const struct bench *const b, const int gravel)
 }
 
 // Another table: what belongs to the one before is not used with it, and the other way round.
-static void a_table_is_exchanged_with_the_forecast_that_belongs_to_it(void **state)
+TEST(a_table_is_exchanged_with_the_forecast_that_belongs_to_it)
 {
-    (void)state;
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
     bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
@@ -90,9 +89,8 @@ static void offer_machine(struct bench *const b, const struct dig_correction *co
     free(made);
 }
 
-static void a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start(void **state)
+TEST(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start)
 {
-    (void)state;
     struct bench *const         b     = bench_create();
     const struct dig_correction heavy = { .bucket = { .mass_kg = 250.0 } };
     int64_t                     at_ms = 1000;
@@ -123,13 +121,4 @@ static void a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_star
     offer_machine(b, NULL, 4);
     assert_close(moment_after_Nm(b, &at_ms, 100, 0.0), moment_of_Nm(b, NULL, 100), 1e-6);
     bench_destroy(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_table_is_exchanged_with_the_forecast_that_belongs_to_it),
-        cmocka_unit_test(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start),
-    };
-    return cmocka_run_group_tests_name("loop", tests, NULL, NULL);
 }

@@ -79,9 +79,8 @@ static void run(void)
     dig_loop_run(&bench->loop, &stop);
 }
 
-static void ticks_that_come_in_time_keep_the_beat(void **state)
+TEST(ticks_that_come_in_time_keep_the_beat)
 {
-    (void)state;
     set_up();
     run();
     assert_int_equal(bench->loop.tick_status.ticks, BEATS);
@@ -93,10 +92,8 @@ static void ticks_that_come_in_time_keep_the_beat(void **state)
     bench_destroy(bench);
 }
 
-static void
-a_tick_that_is_late_by_less_than_a_period_is_no_overrun_and_shifts_no_other(void **state)
+TEST(a_tick_that_is_late_by_less_than_a_period_is_no_overrun_and_shifts_no_other)
 {
-    (void)state;
     set_up();
     fake.late_ns[10] = PERIOD - 1;
     fake.late_ns[12] = PERIOD / 2;
@@ -109,9 +106,8 @@ a_tick_that_is_late_by_less_than_a_period_is_no_overrun_and_shifts_no_other(void
     bench_destroy(bench);
 }
 
-static void a_tick_a_period_late_is_counted_and_what_was_missed_is_skipped(void **state)
+TEST(a_tick_a_period_late_is_counted_and_what_was_missed_is_skipped)
 {
-    (void)state;
     set_up();
     fake.late_ns[10] = PERIOD;
     fake.late_ns[20] = 7 * PERIOD + PERIOD / 2;
@@ -129,9 +125,8 @@ static void a_tick_a_period_late_is_counted_and_what_was_missed_is_skipped(void 
     bench_destroy(bench);
 }
 
-static void a_tick_that_takes_too_long_makes_the_next_an_overrun_and_is_told(void **state)
+TEST(a_tick_that_takes_too_long_makes_the_next_an_overrun_and_is_told)
 {
-    (void)state;
     set_up();
     fake.takes_ns[10] = 2 * PERIOD + MS;
     run();
@@ -152,9 +147,8 @@ static void readings_of_a_gap(const int beat)
     }
 }
 
-static void readings_wait_for_a_late_tick_and_keep_their_own_time(void **state)
+TEST(readings_wait_for_a_late_tick_and_keep_their_own_time)
 {
-    (void)state;
     set_up();
     fake.late_ns[20] = 10 * PERIOD;
     fake.at_beat     = readings_of_a_gap;
@@ -168,17 +162,4 @@ static void readings_wait_for_a_late_tick_and_keep_their_own_time(void **state)
     assert_int_equal(bench->loop.tick_status.overruns, 1);
     assert_int_equal(bench->loop.tick_status.lost, 0);
     bench_destroy(bench);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ticks_that_come_in_time_keep_the_beat),
-        cmocka_unit_test(
-            a_tick_that_is_late_by_less_than_a_period_is_no_overrun_and_shifts_no_other),
-        cmocka_unit_test(a_tick_a_period_late_is_counted_and_what_was_missed_is_skipped),
-        cmocka_unit_test(a_tick_that_takes_too_long_makes_the_next_an_overrun_and_is_told),
-        cmocka_unit_test(readings_wait_for_a_late_tick_and_keep_their_own_time),
-    };
-    return cmocka_run_group_tests_name("loop_overrun", tests, NULL, NULL);
 }

@@ -18,9 +18,8 @@ static struct dig_match match_by(struct dig_matcher *const         matcher,
     return match;
 }
 
-static void with_and_without_a_summary_a_dig_is_of_the_same_gravel(void **state)
+TEST(with_and_without_a_summary_a_dig_is_of_the_same_gravel)
 {
-    (void)state;
     struct dig_curve_set *const set     = made_table(&options);
     struct dig_matcher          matcher = { .outline = NULL };
     const struct dig_match      without = match_by(&matcher, set);
@@ -37,9 +36,8 @@ static void with_and_without_a_summary_a_dig_is_of_the_same_gravel(void **state)
 }
 
 // The first entry that fits is another once the table has changed, and the summary with it.
-static void another_table_taken_up_is_the_one_that_is_matched(void **state)
+TEST(another_table_taken_up_is_the_one_that_is_matched)
 {
-    (void)state;
     struct dig_curve_set *const set     = made_table(&options);
     struct dig_matcher          matcher = { .outline = NULL };
     dig_matcher_set_table(&matcher, set);
@@ -57,13 +55,4 @@ static void another_table_taken_up_is_the_one_that_is_matched(void **state)
     dig_matcher_finish(&matcher);
     dig_matcher_finish(NULL);
     made_table_destroy(other);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_and_without_a_summary_a_dig_is_of_the_same_gravel),
-        cmocka_unit_test(another_table_taken_up_is_the_one_that_is_matched),
-    };
-    return cmocka_run_group_tests_name("matcher", tests, NULL, NULL);
 }

@@ -50,17 +50,15 @@ static void refuse(const uint8_t answer[], const size_t size, const int why)
     assert_true(registers[0] == 1 && registers[1] == 2 && registers[2] == 3);
 }
 
-static void an_answer_to_the_request_is_taken(void **state)
+TEST(an_answer_to_the_request_is_taken)
 {
-    (void)state;
     uint16_t registers[REGISTERS] = { 0 };
     assert_int_equal(ask(right, ANSWER, registers), 0);
     assert_true(registers[0] == 1 && registers[1] == 0xfffe && registers[2] == 0x8007);
 }
 
-static void no_byte_before_the_registers_may_be_another(void **state)
+TEST(no_byte_before_the_registers_may_be_another)
 {
-    (void)state;
     for (size_t at = 0; at < HEADER; at++) {
         for (unsigned bit = 0; bit < 8; bit++) {
             uint8_t lie[ANSWER + 256] = { 0 };
@@ -74,9 +72,8 @@ static void no_byte_before_the_registers_may_be_another(void **state)
     }
 }
 
-static void an_exception_is_told(void **state)
+TEST(an_exception_is_told)
 {
-    (void)state;
     const uint8_t busy[]    = { 0x12, 0x34, 0, 0, 0, 3, 17, 0x84, 6 };
     const uint8_t no_such[] = { 0x12, 0x34, 0, 0, 0, 3, 17, 0x84, 200 };
     const uint8_t longer[]  = { 0x12, 0x34, 0, 0, 0, 4, 17, 0x84, 6 };
@@ -85,17 +82,15 @@ static void an_exception_is_told(void **state)
     refuse(longer, sizeof longer, EMBBADDATA);
 }
 
-static void half_an_answer_is_waited_for_no_longer_than_a_whole(void **state)
+TEST(half_an_answer_is_waited_for_no_longer_than_a_whole)
 {
-    (void)state;
     for (size_t size = 0; size < ANSWER; size++) {
         refuse(right, size, ETIMEDOUT);
     }
 }
 
-static void a_connection_that_is_closed_is_told(void **state)
+TEST(a_connection_that_is_closed_is_told)
 {
-    (void)state;
     int       end[2];
     uint16_t  registers[REGISTERS];
     modbus_t *bus = modbus_new_tcp("127.0.0.1", 1502);
@@ -106,16 +101,4 @@ static void a_connection_that_is_closed_is_told(void **state)
     assert_int_equal(errno, EPIPE);
     modbus_close(bus);
     modbus_free(bus);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_answer_to_the_request_is_taken),
-        cmocka_unit_test(no_byte_before_the_registers_may_be_another),
-        cmocka_unit_test(an_exception_is_told),
-        cmocka_unit_test(half_an_answer_is_waited_for_no_longer_than_a_whole),
-        cmocka_unit_test(a_connection_that_is_closed_is_told),
-    };
-    return cmocka_run_group_tests_name("modbus_tcp", tests, NULL, NULL);
 }

@@ -29,9 +29,8 @@ static void check_heard(const int fd, const char *const expected)
     assert_memory_equal(text, expected, strlen(expected));
 }
 
-static void a_message_reaches_the_manager_s_socket(void **state)
+TEST(a_message_reaches_the_manager_s_socket)
 {
-    (void)state;
     const char *const path = scratch_path("socket");
     const int         fd   = listen_at(path, strlen(path));
     assert_int_equal(setenv("NOTIFY_SOCKET", path, 1), 0);
@@ -43,9 +42,8 @@ static void a_message_reaches_the_manager_s_socket(void **state)
     assert_int_equal(dig_notify("WATCHDOG=1"), DIG_EIO);
 }
 
-static void an_abstract_socket_works_too(void **state)
+TEST(an_abstract_socket_works_too)
 {
-    (void)state;
     char name[64];
     (void)snprintf(name, sizeof name, "@digsight_test_%d", (int)getpid());
     assert_int_equal(setenv("NOTIFY_SOCKET", name, 1), 0);
@@ -57,9 +55,8 @@ static void an_abstract_socket_works_too(void **state)
     assert_int_equal(close(fd), 0);
 }
 
-static void without_a_manager_nothing_happens(void **state)
+TEST(without_a_manager_nothing_happens)
 {
-    (void)state;
     assert_int_equal(unsetenv("NOTIFY_SOCKET"), 0);
     assert_int_equal(dig_notify("READY=1"), DIG_OK);
     assert_int_equal(setenv("NOTIFY_SOCKET", "relative", 1), 0);
@@ -72,9 +69,8 @@ static void without_a_manager_nothing_happens(void **state)
     assert_int_equal(dig_notify("READY=1"), DIG_EINVAL);
 }
 
-static void the_watchdog_is_fed_at_half_its_time(void **state)
+TEST(the_watchdog_is_fed_at_half_its_time)
 {
-    (void)state;
     assert_int_equal(unsetenv("WATCHDOG_USEC"), 0);
     assert_int_equal(dig_notify_watchdog_ns(), 0);
     assert_int_equal(setenv("WATCHDOG_USEC", "5000000", 1), 0);
@@ -83,13 +79,4 @@ static void the_watchdog_is_fed_at_half_its_time(void **state)
     assert_int_equal(dig_notify_watchdog_ns(), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_message_reaches_the_manager_s_socket),
-        cmocka_unit_test(an_abstract_socket_works_too),
-        cmocka_unit_test(without_a_manager_nothing_happens),
-        cmocka_unit_test(the_watchdog_is_fed_at_half_its_time),
-    };
-    return cmocka_run_group_tests_name("notify", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -7,9 +7,8 @@
 #include "tests/firmware_host/lcm_read_back.h"
 #include "tests/scratch.h"
 
-static void a_record_is_a_sample_and_its_estimate(void **state)
+TEST(a_record_is_a_sample_and_its_estimate)
 {
-    (void)state;
     struct dig_output *const output          = begin("record.lcm");
     struct dig_record        record          = { .sample = { .time_ns = 100 } };
     record.sample.value[DIG_SIGNAL_BOOM_rad] = 0.25;
@@ -75,9 +74,8 @@ static void a_record_is_a_sample_and_its_estimate(void **state)
     dig_machine_recording_finish(&samples);
 }
 
-static void health_carries_every_counter(void **state)
+TEST(health_carries_every_counter)
 {
-    (void)state;
     struct dig_output *const output = begin("health.lcm");
     const struct dig_health  health = {
          .state           = "running",
@@ -143,9 +141,8 @@ static void health_carries_every_counter(void **state)
     assert_true(m.frames == 10 && m.reconnects == 12 && m.lost == 13 && m.matches == 14);
 }
 
-static void latencies_are_counted_where_they_lie(void **state)
+TEST(latencies_are_counted_where_they_lie)
 {
-    (void)state;
     struct dig_latency l = { 0 };
     assert_close(dig_latency_quantile_us(&l, 0.99), 0.0, 0.0);
     const int64_t took_us[] = { -5, 0, 16, 17, 100, 1000, 2000, 1000000000 };
@@ -161,9 +158,8 @@ static void latencies_are_counted_where_they_lie(void **state)
     assert_true(dig_latency_quantile_us(&l, 0.5) < 20.0);
 }
 
-static void a_network_that_cannot_be_is_refused(void **state)
+TEST(a_network_that_cannot_be_is_refused)
 {
-    (void)state;
     struct dig_output *output = NULL;
     struct dig_error   error  = { "" };
     assert_int_equal(dig_output_create("nonsense://", &output, &error), DIG_EIO);
@@ -172,13 +168,4 @@ static void a_network_that_cannot_be_is_refused(void **state)
     dig_output_destroy(NULL);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_record_is_a_sample_and_its_estimate),
-        cmocka_unit_test(health_carries_every_counter),
-        cmocka_unit_test(latencies_are_counted_where_they_lie),
-        cmocka_unit_test(a_network_that_cannot_be_is_refused),
-    };
-    return cmocka_run_group_tests_name("output_lcm", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

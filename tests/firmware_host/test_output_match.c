@@ -6,9 +6,8 @@
 #include "tests/firmware_host/lcm_read_back.h"
 #include "tests/scratch.h"
 
-static void a_match_names_gravel_interval_and_table(void **state)
+TEST(a_match_names_gravel_interval_and_table)
 {
-    (void)state;
     struct dig_output *const    output = begin("match.lcm");
     const struct dig_fit_result result = {
         .track.any        = true,
@@ -84,9 +83,8 @@ static void a_match_names_gravel_interval_and_table(void **state)
 }
 
 // A table dug in one way alone does not tell how a dig was made; it was matched with the plain one.
-static void a_depth_that_was_not_told_is_not_a_number(void **state)
+TEST(a_depth_that_was_not_told_is_not_a_number)
 {
-    (void)state;
     struct dig_output *const    output = begin("plain.lcm");
     const struct dig_fit_result result = { .track.any = true };
     assert_int_equal(dig_output_match(output, &result), DIG_OK);
@@ -99,9 +97,8 @@ static void a_depth_that_was_not_told_is_not_a_number(void **state)
     assert_close(seen.match.matched_attack_rad, 0.0, 0.0);
 }
 
-static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state)
+TEST(a_prediction_carries_its_points_and_an_invalid_one_none)
 {
-    (void)state;
     struct dig_output *const            output      = begin("predictions.lcm");
     static struct dig_prediction_record predictions = { .time_ns    = 5,
                                                         .expires_ns = 9,
@@ -155,12 +152,4 @@ static void a_prediction_carries_its_points_and_an_invalid_one_none(void **state
     assert_string_equal(seen.trajectory[2], "");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_match_names_gravel_interval_and_table),
-        cmocka_unit_test(a_depth_that_was_not_told_is_not_a_number),
-        cmocka_unit_test(a_prediction_carries_its_points_and_an_invalid_one_none),
-    };
-    return cmocka_run_group_tests_name("output_lcm", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

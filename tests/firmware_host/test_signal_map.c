@@ -19,9 +19,8 @@ static struct dig_signal_map can_map(void)
 
 // The bytes of the DBC's golden frames, now to SI: 11 MPa is 11e6 Pa; what is not available or
 // beyond the range is no number.
-static void golden_pressure_frame_becomes_pascals(void **state)
+TEST(golden_pressure_frame_becomes_pascals)
 {
-    (void)state;
     const struct dig_signal_map map   = can_map();
     const int                   group = dig_signal_map_group(&map, 0x18FF79E8, true);
     assert_true(group >= 0);
@@ -42,9 +41,8 @@ static void golden_pressure_frame_becomes_pascals(void **state)
 }
 
 // What SAE J1939-71 sets apart is no value when the map says so, whatever its range allows.
-static void j1939_s_reserved_values_are_not_available(void **state)
+TEST(j1939_s_reserved_values_are_not_available)
 {
-    (void)state;
     struct dig_signal_map map = can_map();
     const unsigned        p   = (unsigned)dig_signal_map_group(&map, 0x18FF79E8, true);
     const unsigned        a   = (unsigned)dig_signal_map_group(&map, 0x18FF7DE8, true);
@@ -75,9 +73,8 @@ static void j1939_s_reserved_values_are_not_available(void **state)
     }
 }
 
-static void a_frame_with_a_wrong_checksum_is_refused(void **state)
+TEST(a_frame_with_a_wrong_checksum_is_refused)
 {
-    (void)state;
     struct dig_dbc        dbc;
     struct dig_signal_map map;
     assert_int_equal(dig_dbc_read("tests/data/sealed/zx200_sealed.dbc", &dbc, NULL), DIG_OK);
@@ -102,9 +99,8 @@ static void a_frame_with_a_wrong_checksum_is_refused(void **state)
     assert_close(r.value[DIG_SIGNAL_BOOM_HEAD_Pa], 11e6, 1e-6);
 }
 
-static void the_alive_counter_and_the_optional_signals_are_read(void **state)
+TEST(the_alive_counter_and_the_optional_signals_are_read)
 {
-    (void)state;
     const struct dig_signal_map map     = can_map();
     const unsigned              machine = (unsigned)dig_signal_map_group(&map, 0x18FF84E8, true);
     const unsigned              tilt    = (unsigned)dig_signal_map_group(&map, 0x18FF7EE8, true);
@@ -125,9 +121,8 @@ static void the_alive_counter_and_the_optional_signals_are_read(void **state)
     assert_int_equal(r.state[DIG_SIGNAL_PITCH_rad], DIG_READING_NOT_AVAILABLE);
 }
 
-static void ids_are_told_apart_and_short_frames_refused(void **state)
+TEST(ids_are_told_apart_and_short_frames_refused)
 {
-    (void)state;
     const struct dig_signal_map map = can_map();
     assert_int_equal(dig_signal_map_group(&map, 0x18FF79E9, true), -1);
     assert_int_equal(dig_signal_map_group(&map, 0x18FF79E8 & 0x7FF, false), -1);
@@ -138,9 +133,8 @@ static void ids_are_told_apart_and_short_frames_refused(void **state)
 }
 
 // Worked by hand: 0x0B28 = 2856 is 0.2856 rad; 0xD724 = -10460 is -1.0460 rad; 8400 is 8.4 MPa.
-static void golden_register_block_becomes_si(void **state)
+TEST(golden_register_block_becomes_si)
 {
-    (void)state;
     const struct dig_signal_map map = modbus_map("config/signals/modbus_default.yaml");
     assert_int_equal(map.groups, 1);
     assert_int_equal(map.group[0].function, 4);
@@ -175,9 +169,8 @@ static const char wide_map[] =
     "  - {name: bucket_rad, register: 14, type: int16, scale: 1e-3, min: -2, max: 2}\n" PRESSURES;
 
 // Worked by hand: 0x3F400000 is the float 0.75, so -(0.75 + 0.25) = -1; 0xFFF0BDC0 is -1000000.
-static void wide_registers_signs_and_offsets_are_applied(void **state)
+TEST(wide_registers_signs_and_offsets_are_applied)
 {
-    (void)state;
     const struct dig_signal_map map = modbus_map(scratch_write("wide.yaml", wide_map));
     assert_int_equal(map.groups, 1);
     assert_int_equal(map.group[0].function, 3);
@@ -201,16 +194,4 @@ static void wide_registers_signs_and_offsets_are_applied(void **state)
     assert_int_equal(r.state[DIG_SIGNAL_BOOM_rad], DIG_READING_NAN);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(golden_pressure_frame_becomes_pascals),
-        cmocka_unit_test(j1939_s_reserved_values_are_not_available),
-        cmocka_unit_test(a_frame_with_a_wrong_checksum_is_refused),
-        cmocka_unit_test(the_alive_counter_and_the_optional_signals_are_read),
-        cmocka_unit_test(ids_are_told_apart_and_short_frames_refused),
-        cmocka_unit_test(golden_register_block_becomes_si),
-        cmocka_unit_test(wide_registers_signs_and_offsets_are_applied),
-    };
-    return cmocka_run_group_tests_name("signal_map", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -38,50 +38,33 @@ static int64_t first_stuck(const bool angles_stand, const bool pressures_stand, 
     return first_stuck_of(angles_stand, pressures_stand, boom, pressure_Pa, from, 0);
 }
 
-static void values_that_move_are_never_stuck(void **state)
+TEST(values_that_move_are_never_stuck)
 {
-    (void)state;
     assert_int_equal(first_stuck(false, false, 1.0, 3e6, 0), -1);
 }
 
-static void a_front_that_stands_is_not_stuck(void **state)
+TEST(a_front_that_stands_is_not_stuck)
 {
-    (void)state;
     assert_int_equal(first_stuck(true, true, 1.0, 3e6, 100), -1);
     assert_int_equal(first_stuck(true, false, 1.0, 0.5e6, 100), -1); // an engine's ripple
 }
 
-static void pressures_that_stand_while_boom_and_arm_turn_are_stuck(void **state)
+TEST(pressures_that_stand_while_boom_and_arm_turn_are_stuck)
 {
-    (void)state;
     // 0.1 rad at 0.002 rad a sample.
     assert_in_range(first_stuck(false, true, 1.0, 3e6, 100), 149, 153);
     assert_int_equal(first_stuck(false, true, 0.0, 3e6, 100), -1); // the bucket alone
 }
 
-static void angles_that_stand_while_pressures_change_are_stuck_after_a_while(void **state)
+TEST(angles_that_stand_while_pressures_change_are_stuck_after_a_while)
 {
-    (void)state;
     assert_in_range(first_stuck(true, false, 1.0, 3e6, 100), 150, 153);
 }
 
 // A bucket that hangs: its pressures may stand while boom and arm carry it.
-static void the_buckets_pressures_alone_may_stand(void **state)
+TEST(the_buckets_pressures_alone_may_stand)
 {
-    (void)state;
     enum { BUCKETS = 4 };
     assert_int_equal(first_stuck_of(false, true, 1.0, 3e6, 100, BUCKETS), -1);
     assert_in_range(first_stuck_of(true, false, 1.0, 3e6, 100, BUCKETS), 150, 153);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_that_move_are_never_stuck),
-        cmocka_unit_test(a_front_that_stands_is_not_stuck),
-        cmocka_unit_test(pressures_that_stand_while_boom_and_arm_turn_are_stuck),
-        cmocka_unit_test(angles_that_stand_while_pressures_change_are_stuck_after_a_while),
-        cmocka_unit_test(the_buckets_pressures_alone_may_stand),
-    };
-    return cmocka_run_group_tests_name("stuck", tests, NULL, NULL);
 }

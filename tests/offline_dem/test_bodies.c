@@ -83,9 +83,8 @@ static void finish(struct dig_world *const world)
     dig_ode_scene_destroy(ode);
 }
 
-static void a_clump_weighs_what_its_volume_weighs_and_falls_like_it(void **state)
+TEST(a_clump_weighs_what_its_volume_weighs_and_falls_like_it)
 {
-    (void)state;
     struct dig_scene                   scene    = clump_scene(1e-5);
     const double                       at[1][3] = { { 0.0, 0.0, 0.5 } };
     const double                       no[1][3] = { { 0.3, -1.0, 0.5 } };
@@ -132,9 +131,8 @@ static void sum_up(const struct dig_world *const world, double p_Ns[3], double l
 
 // Two that meet off centre: what one gains the other loses. Angular momentum is taken with
 // velocities half a step behind positions, and the law puts a pair's forces on one line.
-static void clumps_that_collide_conserve_momentum(void **state)
+TEST(clumps_that_collide_conserve_momentum)
 {
-    (void)state;
     struct dig_scene scene               = clump_scene(1e-6);
     scene.gravity_mps2                   = 1e-300;
     const double     at[2][3]            = { { -0.006, 0.001, 0.5 }, { 0.007, 0.0, 0.502 } };
@@ -209,9 +207,8 @@ static struct other make_other(const struct dig_world *const ours)
     return o;
 }
 
-static void a_clump_bounces_as_a_body_of_ode_does(void **state)
+TEST(a_clump_bounces_as_a_body_of_ode_does)
 {
-    (void)state;
     struct dig_scene        scene    = clump_scene(1e-6);
     const double            at[1][3] = { { 0.0, 0.0, 0.010 } };
     const double            by[1][3] = { { 0.4, 0.7, 0.2 } };
@@ -246,9 +243,8 @@ static void a_clump_bounces_as_a_body_of_ode_does(void **state)
     finish(&world);
 }
 
-static void a_grain_rests_on_a_rock_and_the_rock_bears_it(void **state)
+TEST(a_grain_rests_on_a_rock_and_the_rock_bears_it)
 {
-    (void)state;
     static const enum dig_obstacle_shape shape[] = { DIG_OBSTACLE_SPHERE, DIG_OBSTACLE_BOX };
     for (size_t i = 0; i < 2; i++) {
         struct dig_scene scene    = clump_scene(5e-5);
@@ -270,9 +266,8 @@ static void a_grain_rests_on_a_rock_and_the_rock_bears_it(void **state)
 }
 
 // The closest point by trying many.
-static void the_closest_point_of_a_rock_is_the_closest(void **state)
+TEST(the_closest_point_of_a_rock_is_the_closest)
 {
-    (void)state;
     struct dig_scene scene    = clump_scene(1e-5);
     scene.bed.obstacles       = 1;
     scene.bed.obstacle[0]     = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
@@ -308,9 +303,8 @@ static void the_closest_point_of_a_rock_is_the_closest(void **state)
 }
 
 // A rock as heavy as some grains among them, nothing else in the world: what it gains they lose.
-static void a_rock_takes_what_momentum_the_grains_lose(void **state)
+TEST(a_rock_takes_what_momentum_the_grains_lose)
 {
-    (void)state;
     struct dig_scene scene            = clump_scene(5e-6);
     scene.gravity_mps2                = 1e-300;
     scene.bed.clump.spheres           = 0;
@@ -342,9 +336,8 @@ static void a_rock_takes_what_momentum_the_grains_lose(void **state)
 
 // The tool drives a rock ahead of it through empty space: what the rock gains the tool has felt.
 // Contacts are picked long before: a grain that lies still leaves no margin, the rock does.
-static void a_rock_that_comes_is_felt_in_the_step_it_arrives(void **state)
+TEST(a_rock_that_comes_is_felt_in_the_step_it_arrives)
 {
-    (void)state;
     static const enum dig_obstacle_shape shape[] = { DIG_OBSTACLE_SPHERE, DIG_OBSTACLE_BOX };
     for (size_t i = 0; i < 2; i++) {
         struct dig_scene scene  = clump_scene(2e-5);
@@ -378,9 +371,8 @@ static void a_rock_that_comes_is_felt_in_the_step_it_arrives(void **state)
     }
 }
 
-static void the_bucket_feels_the_rock_it_pushes(void **state)
+TEST(the_bucket_feels_the_rock_it_pushes)
 {
-    (void)state;
     static const enum dig_obstacle_shape shape[] = { DIG_OBSTACLE_SPHERE, DIG_OBSTACLE_BOX };
     for (size_t i = 0; i < 2; i++) {
         struct dig_scene scene    = clump_scene(2e-5);
@@ -410,19 +402,4 @@ static void the_bucket_feels_the_rock_it_pushes(void **state)
         assert_close(felt_Ns, -body->mass_kg * body->v_mps[0], 1e-6 * body->mass_kg);
         finish(&world);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_clump_weighs_what_its_volume_weighs_and_falls_like_it),
-        cmocka_unit_test(clumps_that_collide_conserve_momentum),
-        cmocka_unit_test(a_clump_bounces_as_a_body_of_ode_does),
-        cmocka_unit_test(a_grain_rests_on_a_rock_and_the_rock_bears_it),
-        cmocka_unit_test(the_closest_point_of_a_rock_is_the_closest),
-        cmocka_unit_test(a_rock_takes_what_momentum_the_grains_lose),
-        cmocka_unit_test(a_rock_that_comes_is_felt_in_the_step_it_arrives),
-        cmocka_unit_test(the_bucket_feels_the_rock_it_pushes),
-    };
-    return cmocka_run_group_tests_name("bodies", tests, NULL, NULL);
 }

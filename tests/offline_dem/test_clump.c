@@ -16,9 +16,8 @@ static struct dig_clump_shape shape_of(const struct dig_clump *const clump)
     return shape;
 }
 
-static void one_sphere_in_another_is_a_sphere(void **state)
+TEST(one_sphere_in_another_is_a_sphere)
 {
-    (void)state;
     const struct dig_clump clump   = { 2, { 3.0, 3.0 }, { 1.0, 1.0 }, { 0.0, 0.0 }, { 2.0, 1.0 } };
     const struct dig_clump_shape s = shape_of(&clump);
     assert_close(s.radius[0], 0.5, 1e-5);
@@ -33,9 +32,8 @@ static void one_sphere_in_another_is_a_sphere(void **state)
 }
 
 // Two spheres that touch: Steiner's theorem, no integral.
-static void two_spheres_that_touch_obey_steiner(void **state)
+TEST(two_spheres_that_touch_obey_steiner)
 {
-    (void)state;
     const struct dig_clump       clump = { 2, { 0.0 }, { -1.0, 1.0 }, { 0.0 }, { 1.0, 1.0 } };
     const struct dig_clump_shape s     = shape_of(&clump);
     const double                 r     = 0.5 / cbrt(2.0);
@@ -58,9 +56,8 @@ static bool holds(const struct dig_clump *const clump, const double p[3])
 }
 
 // Overlapping spheres of unlike size, off all axes: points thrown at random into the union.
-static void an_overlapping_clump_has_the_inertia_of_the_union(void **state)
+TEST(an_overlapping_clump_has_the_inertia_of_the_union)
 {
-    (void)state;
     const struct dig_clump clump = {
         3, { 0.0, 0.9, 0.3 }, { 0.0, 0.2, 0.8 }, { 0.0, -0.3, 0.5 }, { 1.0, 0.7, 0.6 }
     };
@@ -107,9 +104,8 @@ static void an_overlapping_clump_has_the_inertia_of_the_union(void **state)
     }
 }
 
-static void the_way_a_clump_lies_is_found_from_its_spheres(void **state)
+TEST(the_way_a_clump_lies_is_found_from_its_spheres)
 {
-    (void)state;
     const struct dig_clump clumps[] = {
         { 3, { 0.0, 0.9, 0.3 }, { 0.0, 0.2, 0.8 }, { 0.0, -0.3, 0.5 }, { 1.0, 0.7, 0.6 } },
         { 2, { -0.4, 0.4 }, { 0.0, 0.1 }, { 0.0, 0.2 }, { 1.0, 1.0 } },
@@ -164,9 +160,8 @@ static double energy_J(const struct dig_rigid *const b)
 
 // Spun about the middle axis a body tumbles: energy and angular momentum stay, and halving the step
 // makes the error a quarter.
-static void a_tumbling_body_keeps_its_energy(void **state)
+TEST(a_tumbling_body_keeps_its_energy)
 {
-    (void)state;
     static const double none[3]  = { 0.0, 0.0, 0.0 };
     double              error[2] = { 0.0, 0.0 };
     for (int fine = 0; fine < 2; fine++) {
@@ -191,9 +186,8 @@ static void a_tumbling_body_keeps_its_energy(void **state)
 }
 
 // A sphere turns as its angular velocity says, whatever the step.
-static void a_sphere_turns_evenly(void **state)
+TEST(a_sphere_turns_evenly)
 {
-    (void)state;
     static const double none[3] = { 0.0, 0.0, 0.0 };
     struct dig_rigid    b       = free_body();
     for (int k = 0; k < 3; k++) {
@@ -205,17 +199,4 @@ static void a_sphere_turns_evenly(void **state)
     const double angle = 2.0 * sqrt(0.02 * 0.02 + 1.0 + 0.09);
     assert_close(fabs(b.q[0]), fabs(cos(0.5 * angle)), 1e-12);
     assert_close(b.w_radps[1], 2.0, 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_sphere_in_another_is_a_sphere),
-        cmocka_unit_test(two_spheres_that_touch_obey_steiner),
-        cmocka_unit_test(an_overlapping_clump_has_the_inertia_of_the_union),
-        cmocka_unit_test(the_way_a_clump_lies_is_found_from_its_spheres),
-        cmocka_unit_test(a_tumbling_body_keeps_its_energy),
-        cmocka_unit_test(a_sphere_turns_evenly),
-    };
-    return cmocka_run_group_tests_name("clump", tests, NULL, NULL);
 }

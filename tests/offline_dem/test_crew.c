@@ -23,9 +23,8 @@ static void count(void *const context, const size_t member)
     atomic_fetch_add(&worked[member], 1);
 }
 
-static void every_member_works_once_a_call(void **state)
+TEST(every_member_works_once_a_call)
 {
-    (void)state;
     struct dig_crew *crew = NULL;
     dig_crew_run(NULL, count, NULL);
     assert_int_equal(atomic_load(&worked[0]), 1);
@@ -67,9 +66,8 @@ static struct dig_world make_bar(void)
     return world;
 }
 
-static void a_large_bed_moves_alike_on_any_number_of_threads(void **state)
+TEST(a_large_bed_moves_alike_on_any_number_of_threads)
 {
-    (void)state;
     struct dig_world alone = make_bar();
     alone.single           = true;
     dem_run(&alone, 120);
@@ -92,9 +90,8 @@ static void a_large_bed_moves_alike_on_any_number_of_threads(void **state)
 }
 
 // The crew shares the copies to and from a device.
-static void a_bed_on_a_device_moves_alike_on_any_number_of_threads(void **state)
+TEST(a_bed_on_a_device_moves_alike_on_any_number_of_threads)
 {
-    (void)state;
     struct dig_world world[2] = { make_bar(), make_bar() };
     for (size_t k = 0; k < 2; k++) {
         struct dig_device *const device = dem_host_device_create();
@@ -125,9 +122,8 @@ static void a_bed_on_a_device_moves_alike_on_any_number_of_threads(void **state)
 }
 
 // In double precision a bed has no slabs: no contact is lost or counted twice between them.
-static void slabs_lose_no_contact(void **state)
+TEST(slabs_lose_no_contact)
 {
-    (void)state;
     struct dig_world split = make_bar();
     struct dig_world whole = make_bar();
     split.single           = true;
@@ -156,9 +152,8 @@ static void slabs_lose_no_contact(void **state)
 }
 
 // A bed of one slab would have the others wait for it, turning in place.
-static void a_small_bed_is_not_shared(void **state)
+TEST(a_small_bed_is_not_shared)
 {
-    (void)state;
     const struct dig_stepper stepper = { .single_precision = true, .threads = 2 };
     struct dig_world         world   = { .crew = NULL };
     world.grains.n                   = 15000;
@@ -168,16 +163,4 @@ static void a_small_bed_is_not_shared(void **state)
     assert_int_equal(dig_setup_stepper(&stepper, &world, NULL), DIG_OK);
     assert_non_null(world.crew);
     dig_crew_destroy(world.crew);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_member_works_once_a_call),
-        cmocka_unit_test(a_large_bed_moves_alike_on_any_number_of_threads),
-        cmocka_unit_test(a_bed_on_a_device_moves_alike_on_any_number_of_threads),
-        cmocka_unit_test(slabs_lose_no_contact),
-        cmocka_unit_test(a_small_bed_is_not_shared),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,9 +46,8 @@ static void expect_double(const struct dig_recording *const once,
     assert_true(most_Nm > 1e-3);
 }
 
-static void twice_the_density_doubles_every_force(void **state)
+TEST(twice_the_density_doubles_every_force)
 {
-    (void)state;
     const struct dig_scene scene = scaling_scene();
     for (int single = 0; single < 2; single++) {
         const struct dig_stepper stepper = { .single_precision = single == 1 };
@@ -61,9 +60,8 @@ static void twice_the_density_doubles_every_force(void **state)
 }
 
 // The test can fail: with springs that stay, heavy grains sink deeper into each other.
-static void springs_that_stay_are_felt(void **state)
+TEST(springs_that_stay_are_felt)
 {
-    (void)state;
     struct dig_scene scene        = scaling_scene();
     scene.material.young_at_kgpm3 = 0.0;
     struct dig_recording once     = dig(NULL, &scene, DENSITY);
@@ -75,13 +73,4 @@ static void springs_that_stay_are_felt(void **state)
     assert_true(off_Nm > 1e-4);
     dig_recording_finish(&once);
     dig_recording_finish(&twice);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(twice_the_density_doubles_every_force),
-        cmocka_unit_test(springs_that_stay_are_felt),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,9 +34,8 @@ static struct dig_bed pour(const struct dig_scene *const scene)
     return bed;
 }
 
-static void a_dig_is_recorded_from_air_to_its_end(void **state)
+TEST(a_dig_is_recorded_from_air_to_its_end)
 {
-    (void)state;
     const struct dig_scene             scene = small_scene();
     const struct dig_trajectory *const t     = &scene.trajectory[0];
     struct dig_bed                     bed   = pour(&scene);
@@ -69,9 +68,8 @@ static void a_dig_is_recorded_from_air_to_its_end(void **state)
     dig_bed_finish(&bed);
 }
 
-static void the_same_dig_twice_gives_the_same_bits(void **state)
+TEST(the_same_dig_twice_gives_the_same_bits)
 {
-    (void)state;
     const struct dig_scene scene = small_scene();
     struct dig_bed         bed   = pour(&scene);
     struct dig_recording   r[2]  = { { 0 }, { 0 } };
@@ -102,9 +100,8 @@ static void expect_refusal(const struct dig_scene *const scene, const struct dig
     }
 }
 
-static void what_cannot_be_computed_is_refused_by_name(void **state)
+TEST(what_cannot_be_computed_is_refused_by_name)
 {
-    (void)state;
     struct dig_scene     scene = small_scene();
     double               at[2] = { 0.01, 0.03 }, radius[2] = { GRAIN_m, GRAIN_m };
     const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
@@ -132,9 +129,8 @@ static void what_cannot_be_computed_is_refused_by_name(void **state)
     expect_refusal(&scene, &gravel, &bed, "time_step_s");
 }
 
-static void what_a_dig_cannot_begin_with_is_refused(void **state)
+TEST(what_a_dig_cannot_begin_with_is_refused)
 {
-    (void)state;
     struct dig_scene     scene = small_scene();
     double               at[2] = { 0.01, 0.0101 }, radius[2] = { GRAIN_m, GRAIN_m };
     const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
@@ -167,9 +163,8 @@ static void what_a_dig_cannot_begin_with_is_refused(void **state)
     expect_refusal(&scene, &gravel, &bed, "box_m.y");
 }
 
-static void a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not(void **state)
+TEST(a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not)
 {
-    (void)state;
     struct dig_scene     scene = small_scene();
     const struct dig_bed empty = { 0 };
     struct dig_recording r     = { 0 };
@@ -197,9 +192,8 @@ static int stop_soon(void *const context, const double done_s, const double tota
     return ++*calls < 3;
 }
 
-static void a_dig_that_is_stopped_writes_nothing(void **state)
+TEST(a_dig_that_is_stopped_writes_nothing)
 {
-    (void)state;
     const struct dig_scene    scene    = small_scene();
     int                       calls    = 0;
     const struct dig_progress progress = { stop_soon, &calls };
@@ -219,9 +213,8 @@ static void a_dig_that_is_stopped_writes_nothing(void **state)
     dig_bed_finish(&bed);
 }
 
-static void pictures_are_written_where_they_are_wanted(void **state)
+TEST(pictures_are_written_where_they_are_wanted)
 {
-    (void)state;
     const struct dig_scene scene = small_scene();
     double                 x[1] = { 0.03 }, y[1] = { 0.0 }, z[1] = { GRAIN_m }, r[1] = { GRAIN_m };
     const struct dig_bed   bed   = { .grains = 1, .x_m = x, .y_m = y, .z_m = z, .radius_m = r };
@@ -279,9 +272,8 @@ static double step_of(const struct dig_scene *const scene)
 
 // Measured on beds of the reference: quiet at 3.1e-5 s for 5 MPa and 1.25e-5 s for 150 MPa, warming
 // up at 2e-5 s for 150 MPa.
-static void the_derived_step_is_short_enough_and_not_wasteful(void **state)
+TEST(the_derived_step_is_short_enough_and_not_wasteful)
 {
-    (void)state;
     struct dig_scene scene = small_scene();
     assert_close(step_of(&scene), STEP_s, 0.0);
     scene.time_step_s   = 0.0;
@@ -293,19 +285,4 @@ static void the_derived_step_is_short_enough_and_not_wasteful(void **state)
     // A grain half as large has half the time.
     scene.material.diameter_m *= 0.5;
     assert_close(step_of(&scene), 0.5 * stiff_s, 1e-3 * stiff_s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_dig_is_recorded_from_air_to_its_end),
-        cmocka_unit_test(the_same_dig_twice_gives_the_same_bits),
-        cmocka_unit_test(what_cannot_be_computed_is_refused_by_name),
-        cmocka_unit_test(what_a_dig_cannot_begin_with_is_refused),
-        cmocka_unit_test(a_trajectory_without_phases_is_refused_and_an_empty_bed_is_not),
-        cmocka_unit_test(a_dig_that_is_stopped_writes_nothing),
-        cmocka_unit_test(pictures_are_written_where_they_are_wanted),
-        cmocka_unit_test(the_derived_step_is_short_enough_and_not_wasteful),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

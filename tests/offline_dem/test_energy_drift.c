@@ -62,30 +62,26 @@ static bool heats(const double step_s, const double fall_mps, const double watch
     return found;
 }
 
-static void a_safe_step_leaves_a_resting_bed_alone(void **state)
+TEST(a_safe_step_leaves_a_resting_bed_alone)
 {
-    (void)state;
     assert_false(heats(3e-5, 0.0, WATCH_s));
     assert_false(heats(STEP_s, 0.0, WATCH_s));
 }
 
-static void a_step_that_heats_is_noticed(void **state)
+TEST(a_step_that_heats_is_noticed)
 {
-    (void)state;
     assert_true(heats(1e-4, 0.0, WATCH_s));
     assert_true(heats(1.2e-4, 0.0, WATCH_s));
 }
 
 // It moves at first, but comes to rest.
-static void a_bed_that_comes_to_rest_does_not_count(void **state)
+TEST(a_bed_that_comes_to_rest_does_not_count)
 {
-    (void)state;
     assert_false(heats(STEP_s, 0.3, SETTLE_s));
 }
 
-static void a_step_that_explodes_is_an_error_and_writes_nothing(void **state)
+TEST(a_step_that_explodes_is_an_error_and_writes_nothing)
 {
-    (void)state;
     struct dig_world world = make_bed(0.0);
     world.dt_s             = 5e-3;
     bool found             = false;
@@ -94,9 +90,8 @@ static void a_step_that_explodes_is_an_error_and_writes_nothing(void **state)
     dig_world_finish(&world);
 }
 
-static void a_scene_whose_step_heats_is_refused_by_name(void **state)
+TEST(a_scene_whose_step_heats_is_refused_by_name)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     struct dig_scene        scene  = dem_small_scene();
     struct dig_error        error  = { "" };
@@ -114,9 +109,8 @@ static void a_scene_whose_step_heats_is_refused_by_name(void **state)
 }
 
 // A bed from a file: poured at a step it bears, dug at one it does not, or where no grain can be.
-static void a_bed_poured_elsewhere_is_refused_as_one_poured_here(void **state)
+TEST(a_bed_poured_elsewhere_is_refused_as_one_poured_here)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     struct dig_scene        scene  = dem_small_scene();
     struct dig_error        error  = { "" };
@@ -140,9 +134,8 @@ static void a_bed_poured_elsewhere_is_refused_as_one_poured_here(void **state)
     assert_non_null(strstr(error.text, "friction"));
 }
 
-static void what_is_watched_is_poured_as_ever(void **state)
+TEST(what_is_watched_is_poured_as_ever)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
     const struct dig_scene  scene  = dem_small_scene();
     struct dig_bed          bed    = { 0 };
@@ -152,16 +145,4 @@ static void what_is_watched_is_poured_as_ever(void **state)
     dig_bed_finish(&bed);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_safe_step_leaves_a_resting_bed_alone),
-        cmocka_unit_test(a_step_that_heats_is_noticed),
-        cmocka_unit_test(a_bed_that_comes_to_rest_does_not_count),
-        cmocka_unit_test(a_scene_whose_step_heats_is_refused_by_name),
-        cmocka_unit_test(a_bed_poured_elsewhere_is_refused_as_one_poured_here),
-        cmocka_unit_test(what_is_watched_is_poured_as_ever),
-        cmocka_unit_test(a_step_that_explodes_is_an_error_and_writes_nothing),
-    };
-    return cmocka_run_group_tests(tests, pour, empty);
-}
+TESTS_WITH(pour, empty)

@@ -52,16 +52,14 @@ static void digs_agree(const struct dig_scene *const scene)
     ode.bed_finish(&bed);
 }
 
-static void a_short_dig_gives_the_kernels_curve(void **state)
+TEST(a_short_dig_gives_the_kernels_curve)
 {
-    (void)state;
     const struct dig_scene scene = dem_short_dig_scene(0.02);
     digs_agree(&scene);
 }
 
-static void a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve(void **state)
+TEST(a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.02);
     dem_mix_sticky_grains(&scene);
     digs_agree(&scene);
@@ -69,9 +67,8 @@ static void a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve(void **st
 
 // A box that stands fast under the grains, and below the tooth a ball that the bucket
 // pushes through the grains.
-static void a_short_dig_between_rocks_gives_the_kernels_curve(void **state)
+TEST(a_short_dig_between_rocks_gives_the_kernels_curve)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.02);
     scene.bed.obstacles    = 2;
     scene.bed.obstacle[0]  = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
@@ -85,9 +82,8 @@ static void a_short_dig_between_rocks_gives_the_kernels_curve(void **state)
     digs_agree(&scene);
 }
 
-static void a_short_dig_that_moves_a_box_gives_the_kernels_curve(void **state)
+TEST(a_short_dig_that_moves_a_box_gives_the_kernels_curve)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.02);
     scene.bed.obstacles    = 1;
     scene.bed.obstacle[0]  = (struct dig_obstacle){ .shape         = DIG_OBSTACLE_BOX,
@@ -114,9 +110,8 @@ static void refuses(const struct dig_scene *const scene, const char *const vtk_d
     assert_int_equal(r.rows, 77);
 }
 
-static void what_it_does_not_know_is_refused_by_name(void **state)
+TEST(what_it_does_not_know_is_refused_by_name)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.02);
     refuses(&scene, "pictures-go-here", "pictures");
     scene.bed.earlier_digs = 1;
@@ -134,22 +129,8 @@ static void what_it_does_not_know_is_refused_by_name(void **state)
     refuses(&scene, NULL, "phases");
 }
 
-static void it_says_which_engine_it_is(void **state)
+TEST(it_says_which_engine_it_is)
 {
-    (void)state;
     assert_string_equal(dig_engine_ode().name, "ode");
     assert_string_equal(dig_engine_ode().version, dig_engine_kernel().version);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_short_dig_gives_the_kernels_curve),
-        cmocka_unit_test(a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve),
-        cmocka_unit_test(a_short_dig_between_rocks_gives_the_kernels_curve),
-        cmocka_unit_test(a_short_dig_that_moves_a_box_gives_the_kernels_curve),
-        cmocka_unit_test(what_it_does_not_know_is_refused_by_name),
-        cmocka_unit_test(it_says_which_engine_it_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

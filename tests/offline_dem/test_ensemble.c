@@ -165,9 +165,8 @@ static int read_all(void **state)
     return 0;
 }
 
-static void every_case_has_enough_beds(void **state)
+TEST(every_case_has_enough_beds)
 {
-    (void)state;
     for (size_t g = 0; g < PAIRS; g++) {
         for (int k = 0; k < TRAJECTORIES; k++) {
             assert_true(both[g][k].ours.beds >= pair[g].ours_least);
@@ -233,9 +232,8 @@ static void compare(const struct pair *const p, const struct both *const b, cons
     }
 }
 
-static void phase_means_agree_with_liggghts(void **state)
+TEST(phase_means_agree_with_liggghts)
 {
-    (void)state;
     struct tally tally = { 0 };
     print_message("%-21s %-8s %-12s %-3s %19s %19s %8s %8s\n", "gravel", "dig", "phase", "",
                   "ours +- s.e.", "LIGGGHTS +- s.e.", "diff", "allowed");
@@ -255,11 +253,4 @@ static void phase_means_agree_with_liggghts(void **state)
     assert_true(fabs(tally.bias / tally.compared) <= 0.05);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_case_has_enough_beds),
-        cmocka_unit_test(phase_means_agree_with_liggghts),
-    };
-    return cmocka_run_group_tests_name("ensemble", tests, read_all, NULL);
-}
+TESTS_WITH(read_all, NULL)

@@ -99,9 +99,8 @@ static uint64_t dig(const enum dig_isa isa, const bool single)
     return hash;
 }
 
-static void a_short_dig_keeps_its_bits(void **state)
+TEST(a_short_dig_keeps_its_bits)
 {
-    (void)state;
     for (enum dig_isa isa = DIG_ISA_BASE; isa <= dig_kernel_best(); isa++) {
         const uint64_t exact = dig(isa, false);
         const uint64_t rough = dig(isa, true);
@@ -110,12 +109,4 @@ static void a_short_dig_keeps_its_bits(void **state)
                      (unsigned long long)rough);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_short_dig_keeps_its_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,9 +9,8 @@ static double pull_Jpm3(const struct dig_scene *const scene, const size_t a, con
     return dig_grain_types_between(scene, &gravel, a, b).cohesion_Jpm3;
 }
 
-static void grains_pull_by_cohesion_the_bucket_by_adhesion_walls_not_at_all(void **state)
+TEST(grains_pull_by_cohesion_the_bucket_by_adhesion_walls_not_at_all)
 {
-    (void)state;
     const struct dig_scene scene = { .laws = { .cohesion_Jpm3 = 3e4, .adhesion_Jpm3 = 2e4 } };
     assert_close(pull_Jpm3(&scene, 0, 0), 3e4, 0.0);
     assert_close(pull_Jpm3(&scene, 0, DIG_MATERIAL_WALLS), 0.0, 0.0);
@@ -20,9 +19,8 @@ static void grains_pull_by_cohesion_the_bucket_by_adhesion_walls_not_at_all(void
     assert_close(pull_Jpm3(&scene, DIG_MATERIAL_BUCKET, 0), 2e4, 0.0);
 }
 
-static void walls_and_bucket_have_the_grains_own_friction(void **state)
+TEST(walls_and_bucket_have_the_grains_own_friction)
 {
-    (void)state;
     const struct dig_scene scene = { .material = { .restitution = 0.2 } };
     for (size_t other = DIG_MATERIAL_BUCKET; other <= DIG_MATERIAL_WALLS; other++) {
         const struct dig_law_material between = dig_grain_types_between(&scene, &gravel, 0, other);
@@ -33,9 +31,8 @@ static void walls_and_bucket_have_the_grains_own_friction(void **state)
 }
 
 // The pair's value, which both materials decide; walls keep the gravel's.
-static void a_smoother_bucket_takes_its_share_off_both_frictions_and_nothing_off_walls(void **state)
+TEST(a_smoother_bucket_takes_its_share_off_both_frictions_and_nothing_off_walls)
 {
-    (void)state;
     struct dig_scene scene = {
         .material = { .restitution = 0.2 },
         .laws     = { .bucket_smoothness = 0.75 },
@@ -63,9 +60,8 @@ static void a_smoother_bucket_takes_its_share_off_both_frictions_and_nothing_off
 }
 
 // Between two materials of grains the smaller frictions and the geometric mean of restitution.
-static void unlike_grains_share_the_smoother_surface(void **state)
+TEST(unlike_grains_share_the_smoother_surface)
 {
-    (void)state;
     const struct dig_scene scene = {
         .material = { .restitution = 0.2 },
         .bed      = { .materials = 1, .material = { { "layer", 0.9, 0.1, 4000.0, 0.8 } } }
@@ -74,16 +70,4 @@ static void unlike_grains_share_the_smoother_surface(void **state)
     assert_close(between.friction, 0.5, 0.0);
     assert_close(between.rolling, 0.1, 0.0);
     assert_close(between.restitution, 0.4, 1e-15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grains_pull_by_cohesion_the_bucket_by_adhesion_walls_not_at_all),
-        cmocka_unit_test(walls_and_bucket_have_the_grains_own_friction),
-        cmocka_unit_test(
-            a_smoother_bucket_takes_its_share_off_both_frictions_and_nothing_off_walls),
-        cmocka_unit_test(unlike_grains_share_the_smoother_surface),
-    };
-    return cmocka_run_group_tests_name("kinds", tests, NULL, NULL);
 }

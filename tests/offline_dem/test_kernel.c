@@ -89,17 +89,15 @@ static void same_bits(const bool single)
     dig_world_finish(&first);
 }
 
-static void every_variant_gives_the_same_bits(void **state)
+TEST(every_variant_gives_the_same_bits)
 {
-    (void)state;
     same_bits(false);
     same_bits(true);
 }
 
 // Two clouds in either precision: rounding alone parts them, before chaos does.
-static void single_precision_moves_grains_alike(void **state)
+TEST(single_precision_moves_grains_alike)
 {
-    (void)state;
     struct dig_world exact = make_cloud(7, 0.3);
     struct dig_world rough = make_cloud(7, 0.3);
     size_t           met   = 0;
@@ -123,9 +121,8 @@ static void single_precision_moves_grains_alike(void **state)
 }
 
 // What is read between steps, and what is written, must not depend on where the motions are kept.
-static void motions_in_single_precision_can_be_read_and_written(void **state)
+TEST(motions_in_single_precision_can_be_read_and_written)
 {
-    (void)state;
     const double     x[2][3] = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 } };
     struct dig_world world   = dem_world(2, x, dem_material(0.5, 0.5));
     world.single             = true;
@@ -145,9 +142,8 @@ static void motions_in_single_precision_can_be_read_and_written(void **state)
     dig_world_finish(&world);
 }
 
-static void momentum_and_angular_momentum_are_kept(void **state)
+TEST(momentum_and_angular_momentum_are_kept)
 {
-    (void)state;
     struct dig_world world = make_cloud(2, 0.5);
     double           p0[3], l0[3], p1[3], l1[3];
     sum_momenta(&world, p0, l0);
@@ -166,9 +162,8 @@ static void momentum_and_angular_momentum_are_kept(void **state)
 }
 
 // Lists of unlike kinds are kept apart and in one order: nothing is lost between them.
-static void grains_of_two_sizes_keep_momentum_too(void **state)
+TEST(grains_of_two_sizes_keep_momentum_too)
 {
-    (void)state;
     struct dig_random random = { .state = 9 };
     double            x[4][64];
     for (size_t i = 0; i < 64; i++) {
@@ -213,9 +208,8 @@ static void grains_of_two_sizes_keep_momentum_too(void **state)
     dig_world_finish(&world);
 }
 
-static void collisions_take_energy_away(void **state)
+TEST(collisions_take_energy_away)
 {
-    (void)state;
     struct dig_world world   = make_cloud(3, 0.5);
     const double     first_J = dig_grains_kinetic_J(&world.grains);
     dem_run(&world, 4000);
@@ -226,9 +220,8 @@ static void collisions_take_energy_away(void **state)
 }
 
 // Elastic and smooth, nothing is lost: what the springs hold for a while they give back.
-static void without_damping_and_friction_energy_comes_back(void **state)
+TEST(without_damping_and_friction_energy_comes_back)
 {
-    (void)state;
     struct dig_law_material smooth = dem_material(0.0, 0.0);
     smooth.restitution             = 0.999999;
     struct dig_world world         = make_cloud(4, 0.5);
@@ -243,9 +236,8 @@ static void without_damping_and_friction_energy_comes_back(void **state)
 
 // Remaking the lists at every step, with all grains put in order again, changes what is summed
 // first and nothing else: contacts go on remembering.
-static void lists_can_be_remade_at_any_time(void **state)
+TEST(lists_can_be_remade_at_any_time)
 {
-    (void)state;
     struct dig_world lazy  = make_cloud(5, 0.3);
     struct dig_world eager = make_cloud(5, 0.3);
     for (int s = 0; s < 120; s++) {
@@ -266,9 +258,8 @@ static void lists_can_be_remade_at_any_time(void **state)
     dig_world_finish(&eager);
 }
 
-static void a_step_that_is_too_long_is_noticed(void **state)
+TEST(a_step_that_is_too_long_is_noticed)
 {
-    (void)state;
     struct dig_world world = make_cloud(6, 0.3);
     world.dt_s             = 1e-2;
     enum dig_status status = DIG_OK;
@@ -281,9 +272,8 @@ static void a_step_that_is_too_long_is_noticed(void **state)
 
 // Two grains that turn about the same axis like one body do not roll on each other: no torque, and
 // the tangential slip is what gears would feel, not what rolling friction is about.
-static void grains_that_turn_alike_do_not_roll(void **state)
+TEST(grains_that_turn_alike_do_not_roll)
 {
-    (void)state;
     const double     x[2][3] = { { 0.0, 0.0, 0.0 }, { 1.99 * GRAIN_m, 0.0, 0.0 } };
     struct dig_world world   = dem_world(2, x, dem_material(0.0, 0.5));
     for (int i = 0; i < 2; i++) {
@@ -299,9 +289,8 @@ static void grains_that_turn_alike_do_not_roll(void **state)
     dig_world_finish(&world);
 }
 
-static void grains_taken_out_leave_the_others_contacts_alone(void **state)
+TEST(grains_taken_out_leave_the_others_contacts_alone)
 {
-    (void)state;
     // Three in a row under gravity on a wall, and one far away that is taken out.
     const double     x[4][3] = { { 0.0, 0.0, 10.0 * GRAIN_m },
                                  { 0.0, 0.0, 1.0 * GRAIN_m },
@@ -330,22 +319,4 @@ static void grains_taken_out_leave_the_others_contacts_alone(void **state)
     assert_true(before > 0.0);
     assert_close(after / before, 1.0, 0.1);
     dig_world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_variant_gives_the_same_bits),
-        cmocka_unit_test(single_precision_moves_grains_alike),
-        cmocka_unit_test(motions_in_single_precision_can_be_read_and_written),
-        cmocka_unit_test(momentum_and_angular_momentum_are_kept),
-        cmocka_unit_test(grains_of_two_sizes_keep_momentum_too),
-        cmocka_unit_test(collisions_take_energy_away),
-        cmocka_unit_test(without_damping_and_friction_energy_comes_back),
-        cmocka_unit_test(lists_can_be_remade_at_any_time),
-        cmocka_unit_test(a_step_that_is_too_long_is_noticed),
-        cmocka_unit_test(grains_that_turn_alike_do_not_roll),
-        cmocka_unit_test(grains_taken_out_leave_the_others_contacts_alone),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,9 +8,8 @@
 
 // Hertz's sphere on a wall at the characteristic velocity, stepped through time: the linear spring
 // has to hold the same energy at the overlap where it comes to rest.
-static void the_spring_stores_what_hertz_stores(void **state)
+TEST(the_spring_stores_what_hertz_stores)
 {
-    (void)state;
     const struct dig_law_material m     = dem_material(0.5, 0.5);
     const double                  young = 5e6 / (2.0 * (1.0 - 0.04));
     double                        x = 0.0, v = 2.0;
@@ -26,9 +25,8 @@ static void the_spring_stores_what_hertz_stores(void **state)
     assert_close(0.5 * law.normal_Npm * x * x, 0.5 * GRAIN_kg * 4.0, 1e-3 * 0.5 * GRAIN_kg * 4.0);
 }
 
-static void two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall(void **state)
+TEST(two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall)
 {
-    (void)state;
     const struct dig_law_material m    = dem_material(0.5, 0.4);
     const struct dig_law          pair = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     const struct dig_law          wall = dig_law_wall(&m, 0.5 * GRAIN_m, 0.5 * GRAIN_kg);
@@ -38,9 +36,8 @@ static void two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall(void **
     assert_close(pair.reach_m, 2.0 * GRAIN_m, 1e-15);
 }
 
-static void no_touch_is_no_force_and_no_memory(void **state)
+TEST(no_touch_is_no_force_and_no_memory)
 {
-    (void)state;
     const struct dig_law_material    m   = dem_material(0.5, 0.5);
     const struct dig_law             law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     struct dig_contact_history       history = { 1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5 };
@@ -55,9 +52,8 @@ static void no_touch_is_no_force_and_no_memory(void **state)
 }
 
 // However far it slips, friction is mu |F_n|; however far it rolls, the torque is mu_r R* |F_n|.
-static void friction_and_rolling_torque_are_capped(void **state)
+TEST(friction_and_rolling_torque_are_capped)
 {
-    (void)state;
     const struct dig_law_material m       = dem_material(0.3, 0.2);
     const struct dig_law          law     = dig_law_wall(&m, GRAIN_m, GRAIN_kg);
     struct dig_contact_history    history = { 0 };
@@ -79,9 +75,8 @@ static void friction_and_rolling_torque_are_capped(void **state)
 }
 
 // Turning the whole picture turns the answer.
-static void the_law_knows_no_direction(void **state)
+TEST(the_law_knows_no_direction)
 {
-    (void)state;
     const struct dig_law_material m   = dem_material(0.4, 0.4);
     const struct dig_law          law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     struct dig_contact_history    a   = { 1e-6, -2e-6, 5e-7, 1e-6, 2e-6, -3e-6 };
@@ -102,9 +97,8 @@ static void the_law_knows_no_direction(void **state)
 
 // Contacts of every depth, speed and history: in single precision each force errs by some parts in
 // 2^24 of what is added up in it. A dozen roundings follow each other in a term.
-static void single_precision_errs_by_its_roundings(void **state)
+TEST(single_precision_errs_by_its_roundings)
 {
-    (void)state;
     const double                  eps     = 0x1p-24;
     const struct dig_law_material m       = dem_material(0.3, 0.2);
     const struct dig_law          law     = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
@@ -159,17 +153,4 @@ static void single_precision_errs_by_its_roundings(void **state)
         sliding += spring > law.friction * deep;
     }
     assert_in_range(sliding, 4000, 16000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_spring_stores_what_hertz_stores),
-        cmocka_unit_test(two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall),
-        cmocka_unit_test(no_touch_is_no_force_and_no_memory),
-        cmocka_unit_test(friction_and_rolling_torque_are_capped),
-        cmocka_unit_test(the_law_knows_no_direction),
-        cmocka_unit_test(single_precision_errs_by_its_roundings),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,9 +57,8 @@ static void collide(struct dig_world *const world, double *const deepest_m, doub
 
 // Hertz (Timoshenko & Goodier, Theory of Elasticity, art. 141): depth from the energy, and 2.9432
 // depths over the speed.
-static void hertz_spheres_go_as_deep_and_stay_as_long_as_hertz_found(void **state)
+TEST(hertz_spheres_go_as_deep_and_stay_as_long_as_hertz_found)
 {
-    (void)state;
     const double            large_m[] = { GRAIN_m, 2.0 * GRAIN_m };
     const double            speed[]   = { 0.1, 0.8 };
     struct dig_law_material m         = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
@@ -89,9 +88,8 @@ static void hertz_spheres_go_as_deep_and_stay_as_long_as_hertz_found(void **stat
 }
 
 // The damping is made so that e does not depend on the speed, nor on who is how large.
-static void hertz_spheres_part_with_their_restitution_at_any_speed(void **state)
+TEST(hertz_spheres_part_with_their_restitution_at_any_speed)
 {
-    (void)state;
     const double e[]     = { 0.2, 0.5, 0.9 };
     const double speed[] = { 0.2, 1.5 };
     for (size_t k = 0; k < 6; k++) {
@@ -112,9 +110,8 @@ static void hertz_spheres_part_with_their_restitution_at_any_speed(void **state)
 
 // Mindlin: without slip the contact of two spheres is 2 (1 - nu) / (2 - nu) times as stiff
 // sideways as it is head-on, at the same overlap.
-static void mindlin_is_softer_sideways_by_poissons_ratio(void **state)
+TEST(mindlin_is_softer_sideways_by_poissons_ratio)
 {
-    (void)state;
     const struct dig_law_material  m       = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
     const struct dig_law           law     = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     const double                   d_m     = 1.99 * GRAIN_m;
@@ -142,9 +139,8 @@ static struct dig_world on_floor(const struct dig_law_material *const m, const d
 }
 
 // Rolling without slip under a torque mu_r r N: v0^2 / (2 x 5/7 mu_r g), and there it stays.
-static void cdt_stops_a_rolling_grain_where_mechanics_says(void **state)
+TEST(cdt_stops_a_rolling_grain_where_mechanics_says)
 {
-    (void)state;
     const enum dig_normal_law normal[] = { DIG_NORMAL_HOOKE, DIG_NORMAL_HERTZ };
     for (size_t k = 0; k < 2; k++) {
         struct dig_law_material m         = stiff(normal[k], DIG_ROLLING_CDT);
@@ -173,9 +169,8 @@ static double acceleration(const struct dig_law_material *const m, const double 
     return a;
 }
 
-static void under_hertz_and_cdt_a_grain_starts_to_roll_and_to_slip_where_it_should(void **state)
+TEST(under_hertz_and_cdt_a_grain_starts_to_roll_and_to_slip_where_it_should)
 {
-    (void)state;
     struct dig_law_material m = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_CDT);
     m.rolling                 = 0.2;
     assert_close(acceleration(&m, atan(0.2) - 0.03), 0.0, 0.03);
@@ -190,9 +185,8 @@ static void under_hertz_and_cdt_a_grain_starts_to_roll_and_to_slip_where_it_shou
     assert_close(acceleration(&m, slides), slide, 0.02 * slide);
 }
 
-static void without_rolling_friction_a_grain_spins_on(void **state)
+TEST(without_rolling_friction_a_grain_spins_on)
 {
-    (void)state;
     struct dig_law_material m         = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_NONE);
     m.friction                        = 0.0;
     m.rolling                         = 0.9;
@@ -214,9 +208,8 @@ static double shared_circle_m(const double a, const double b, const double d)
 #define PULL_Jpm3 5e5
 
 // Two grains that touch draw together until Hertz' push balances the pull.
-static void glued_grains_rest_where_push_and_pull_balance(void **state)
+TEST(glued_grains_rest_where_push_and_pull_balance)
 {
-    (void)state;
     struct dig_law_material m = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
     m.cohesion_Jpm3           = PULL_Jpm3;
     const double     rj       = 1.5 * GRAIN_m;
@@ -250,9 +243,8 @@ static bool hangs(const struct dig_law_material *const m, const double load_N)
     return does;
 }
 
-static void a_glued_grain_is_torn_off_by_the_largest_pull(void **state)
+TEST(a_glued_grain_is_torn_off_by_the_largest_pull)
 {
-    (void)state;
     struct dig_law_material m = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2);
     m.cohesion_Jpm3           = PULL_Jpm3;
     double most_N             = 0.0;
@@ -269,9 +261,8 @@ static void a_glued_grain_is_torn_off_by_the_largest_pull(void **state)
 }
 
 // Unlike grains under all laws at once, off-centre and spinning.
-static void momentum_and_angular_momentum_are_kept_by_unlike_grains(void **state)
+TEST(momentum_and_angular_momentum_are_kept_by_unlike_grains)
 {
-    (void)state;
     struct dig_law_material m = stiff(DIG_NORMAL_HERTZ, DIG_ROLLING_CDT);
     m.rolling                 = 0.4;
     m.cohesion_Jpm3           = PULL_Jpm3;
@@ -310,9 +301,8 @@ static void momentum_and_angular_momentum_are_kept_by_unlike_grains(void **state
     dig_world_finish(&world);
 }
 
-static void the_plain_choice_stays_with_the_plain_law(void **state)
+TEST(the_plain_choice_stays_with_the_plain_law)
 {
-    (void)state;
     const struct dig_law_material m   = dem_material(0.5, 0.4);
     struct dig_law                law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     assert_false(law.general);
@@ -331,9 +321,8 @@ static void the_plain_choice_stays_with_the_plain_law(void **state)
 }
 
 // Whatever is chosen, bodies that do not touch feel and remember nothing.
-static void no_touch_is_no_force_under_any_law(void **state)
+TEST(no_touch_is_no_force_under_any_law)
 {
-    (void)state;
     for (int k = 0; k < 12; k++) {
         struct dig_law_material m          = dem_material(0.5, 0.5);
         m.normal_law                       = k % 2 == 0 ? DIG_NORMAL_HOOKE : DIG_NORMAL_HERTZ;
@@ -355,9 +344,8 @@ static void no_touch_is_no_force_under_any_law(void **state)
 #define HEAP 60
 
 // A heap of cohesive grains falls on a floor under every processor's variant of the loops.
-static void every_variant_gives_the_same_bits_under_general_laws(void **state)
+TEST(every_variant_gives_the_same_bits_under_general_laws)
 {
-    (void)state;
     double x[HEAP][3];
     for (size_t i = 0; i < HEAP; i++) {
         x[i][0] = 2.02 * GRAIN_m * (double)(i % 4) + 1e-4 * (double)(i % 7);
@@ -384,23 +372,4 @@ static void every_variant_gives_the_same_bits_under_general_laws(void **state)
         }
         dig_world_finish(&world);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hertz_spheres_go_as_deep_and_stay_as_long_as_hertz_found),
-        cmocka_unit_test(hertz_spheres_part_with_their_restitution_at_any_speed),
-        cmocka_unit_test(mindlin_is_softer_sideways_by_poissons_ratio),
-        cmocka_unit_test(cdt_stops_a_rolling_grain_where_mechanics_says),
-        cmocka_unit_test(under_hertz_and_cdt_a_grain_starts_to_roll_and_to_slip_where_it_should),
-        cmocka_unit_test(without_rolling_friction_a_grain_spins_on),
-        cmocka_unit_test(glued_grains_rest_where_push_and_pull_balance),
-        cmocka_unit_test(a_glued_grain_is_torn_off_by_the_largest_pull),
-        cmocka_unit_test(momentum_and_angular_momentum_are_kept_by_unlike_grains),
-        cmocka_unit_test(the_plain_choice_stays_with_the_plain_law),
-        cmocka_unit_test(no_touch_is_no_force_under_any_law),
-        cmocka_unit_test(every_variant_gives_the_same_bits_under_general_laws),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

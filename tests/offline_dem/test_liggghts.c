@@ -4,9 +4,8 @@
 #include "offline_dem/world/grain_types.h"
 #include "tests/offline_dem/liggghts_fixture.h"
 
-static void two_grains_meet_as_in_liggghts(void **state)
+TEST(two_grains_meet_as_in_liggghts)
 {
-    (void)state;
     const double     x[2][3] = { { 0.0, 0.0, 0.0 }, { 0.00721, 0.001, 0.002 } };
     struct dig_world world   = dem_world(2, x, dem_material(0.5, 0.5));
     *world.grains.motion =
@@ -31,16 +30,14 @@ static void meet_wall(const double rolling, const char *const path,
     dig_world_finish(&world);
 }
 
-static void a_grain_meets_a_wall_as_in_liggghts(void **state)
+TEST(a_grain_meets_a_wall_as_in_liggghts)
 {
-    (void)state;
     meet_wall(0.0, FOLDER "slide.csv", (struct tolerance){ 1e-12, 1e-9, 1e-11 });
 }
 
 // Friction at the plate, a mesh of a material of its own there, is a sixth of that at the wall.
-static void a_grain_meets_a_smooth_plate_beside_a_rough_wall_as_in_liggghts(void **state)
+TEST(a_grain_meets_a_smooth_plate_beside_a_rough_wall_as_in_liggghts)
 {
-    (void)state;
     const struct dig_gravel      gravel  = { { 0.9, 0.0, DENSITY } };
     struct dig_scene             scene   = dem_small_scene();
     const double                 x[1][3] = { { 0.0, 0.0, 0.0 } };
@@ -66,9 +63,8 @@ static void a_grain_meets_a_smooth_plate_beside_a_rough_wall_as_in_liggghts(void
 
 // At walls LIGGGHTS turns its rolling spring (1 - delta / 2r) / (1 - delta / r) times as far, up to
 // 1.6 % here; ours turns as far as the grain does.
-static void a_grain_rolls_at_a_wall_nearly_as_in_liggghts(void **state)
+TEST(a_grain_rolls_at_a_wall_nearly_as_in_liggghts)
 {
-    (void)state;
     meet_wall(0.5, FOLDER "wall.csv", (struct tolerance){ 2e-6, 0.012, 5e-5 });
 }
 
@@ -81,9 +77,8 @@ static void add_box_of_cluster(struct dig_world *const world)
 // Rolling friction 0, for the reason above. Until a pair that has parted meets again the two codes
 // agree to the digits of the file. Then they cannot: LIGGGHTS lets a pair that stays in its
 // neighbour list go on with the tangential displacement it parted with; ours begins at zero.
-static void a_cluster_falls_apart_as_in_liggghts(void **state)
+TEST(a_cluster_falls_apart_as_in_liggghts)
 {
-    (void)state;
     struct table *const start = read_table(FOLDER "cluster_start.csv");
     struct table *const then  = read_table(FOLDER "cluster.csv");
     const size_t        n     = start->rows;
@@ -112,9 +107,8 @@ static void a_cluster_falls_apart_as_in_liggghts(void **state)
 // A bed at rest, begun without what its contacts knew, sinks by some hundredths of a millimetre and
 // grips. For eight steps the codes agree to the digits of the files; then pairs that had parted
 // meet again, as in the cluster.
-static void a_bed_at_rest_stays_as_in_liggghts(void **state)
+TEST(a_bed_at_rest_stays_as_in_liggghts)
 {
-    (void)state;
     struct table *const start = read_table(FOLDER "slump_start_0.0_1.csv");
     struct table *const then  = read_table(FOLDER "rest.csv");
     struct dig_world    world = world_of(start, dem_material(0.5, 0.0));
@@ -204,9 +198,8 @@ static void slump(const int seed, struct heap *const ours, struct heap *const th
     free(end);
 }
 
-static void a_column_slumps_as_far_as_in_liggghts(void **state)
+TEST(a_column_slumps_as_far_as_in_liggghts)
 {
-    (void)state;
     struct heap ours = { 0 }, theirs = { 0 };
     const int   seeds = test_is_quick() ? 1 : 3;
     for (int seed = 1; seed <= seeds; seed++) {
@@ -216,18 +209,4 @@ static void a_column_slumps_as_far_as_in_liggghts(void **state)
     assert_close(ours.mean_x_m / theirs.mean_x_m, 1.0, 0.04);
     assert_close(ours.mean_z_m / theirs.mean_z_m, 1.0, 0.03);
     assert_close(ours.reach_m / theirs.reach_m, 1.0, 0.06);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_grains_meet_as_in_liggghts),
-        cmocka_unit_test(a_grain_meets_a_wall_as_in_liggghts),
-        cmocka_unit_test(a_grain_meets_a_smooth_plate_beside_a_rough_wall_as_in_liggghts),
-        cmocka_unit_test(a_grain_rolls_at_a_wall_nearly_as_in_liggghts),
-        cmocka_unit_test(a_cluster_falls_apart_as_in_liggghts),
-        cmocka_unit_test(a_bed_at_rest_stays_as_in_liggghts),
-        cmocka_unit_test(a_column_slumps_as_far_as_in_liggghts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

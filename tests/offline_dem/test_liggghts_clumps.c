@@ -81,24 +81,13 @@ static void follow_spheres(const char *const path, const double rolling)
 // test_liggghts.c; a quarter of the way through their tumble, and to its end, they stay within a
 // twentieth of a radius of each other. (LIGGGHTS at a fifth of the step parts from itself by a
 // fifth of that.)
-static void clumps_fall_and_turn_as_in_liggghts(void **state)
+TEST(clumps_fall_and_turn_as_in_liggghts)
 {
-    (void)state;
     follow_spheres(FOLDER "clumps.csv", 0.0);
 }
 
 // Every sphere's rolling torque turns the whole clump.
-static void clumps_that_resist_rolling_do_so_as_in_liggghts(void **state)
+TEST(clumps_that_resist_rolling_do_so_as_in_liggghts)
 {
-    (void)state;
     follow_spheres(FOLDER "clumps_rolling.csv", 0.5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clumps_fall_and_turn_as_in_liggghts),
-        cmocka_unit_test(clumps_that_resist_rolling_do_so_as_in_liggghts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,40 +54,34 @@ static void meet_wall(const struct dig_law_material m, const char *const path)
     dig_world_finish(&world);
 }
 
-static void unlike_grains_meet_as_in_liggghts(void **state)
+TEST(unlike_grains_meet_as_in_liggghts)
 {
-    (void)state;
     meet_pair(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_EPSD2, 0.0), FOLDER "pair_unlike.csv");
 }
 
-static void grains_under_hertz_meet_as_in_liggghts(void **state)
+TEST(grains_under_hertz_meet_as_in_liggghts)
 {
-    (void)state;
     meet_pair(unlike(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2, 0.0), FOLDER "pair_hertz.csv");
 }
 
-static void grains_under_cdt_meet_as_in_liggghts(void **state)
+TEST(grains_under_cdt_meet_as_in_liggghts)
 {
-    (void)state;
     meet_pair(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_CDT, 0.0), FOLDER "pair_cdt.csv");
 }
 
-static void cohesive_grains_meet_as_in_liggghts(void **state)
+TEST(cohesive_grains_meet_as_in_liggghts)
 {
-    (void)state;
     meet_pair(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_EPSD2, COHESION), FOLDER "pair_sjkr.csv");
 }
 
-static void all_laws_together_are_those_of_liggghts(void **state)
+TEST(all_laws_together_are_those_of_liggghts)
 {
-    (void)state;
     meet_pair(unlike(DIG_NORMAL_HERTZ, DIG_ROLLING_CDT, COHESION),
               FOLDER "pair_hertz_cdt_sjkr.csv");
 }
 
-static void walls_answer_as_in_liggghts(void **state)
+TEST(walls_answer_as_in_liggghts)
 {
-    (void)state;
     meet_wall(unlike(DIG_NORMAL_HERTZ, DIG_ROLLING_NONE, 0.0), FOLDER "wall_hertz.csv");
     meet_wall(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_CDT, 0.0), FOLDER "wall_cdt.csv");
     meet_wall(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_NONE, COHESION), FOLDER "wall_sjkr.csv");
@@ -123,9 +117,8 @@ static struct dig_world mixed_cluster(const struct table *const start)
 
 // As a_cluster_falls_apart_as_in_liggghts(): alike to the digits of the file until a pair that has
 // parted meets again.
-static void a_mixed_sticky_cluster_falls_apart_as_in_liggghts(void **state)
+TEST(a_mixed_sticky_cluster_falls_apart_as_in_liggghts)
 {
-    (void)state;
     struct table *const start = read_table(FOLDER "cluster_start.csv");
     struct table *const then  = read_table(FOLDER "cluster_laws.csv");
     struct dig_world    world = mixed_cluster(start);
@@ -143,18 +136,4 @@ static void a_mixed_sticky_cluster_falls_apart_as_in_liggghts(void **state)
     dig_world_finish(&world);
     free(start);
     free(then);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(unlike_grains_meet_as_in_liggghts),
-        cmocka_unit_test(grains_under_hertz_meet_as_in_liggghts),
-        cmocka_unit_test(grains_under_cdt_meet_as_in_liggghts),
-        cmocka_unit_test(cohesive_grains_meet_as_in_liggghts),
-        cmocka_unit_test(all_laws_together_are_those_of_liggghts),
-        cmocka_unit_test(walls_answer_as_in_liggghts),
-        cmocka_unit_test(a_mixed_sticky_cluster_falls_apart_as_in_liggghts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

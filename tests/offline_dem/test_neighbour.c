@@ -83,22 +83,19 @@ static void expect_all_pairs(const double period_m)
     }
 }
 
-static void every_near_pair_is_listed_once_and_no_other(void **state)
+TEST(every_near_pair_is_listed_once_and_no_other)
 {
-    (void)state;
     expect_all_pairs(0.0);
 }
 
 // The widest pairs reach over half the period: each is still listed once.
-static void every_near_pair_across_the_sides_is_listed_once(void **state)
+TEST(every_near_pair_across_the_sides_is_listed_once)
 {
-    (void)state;
     expect_all_pairs(0.061);
 }
 
-static void any_crew_finds_the_same_list(void **state)
+TEST(any_crew_finds_the_same_list)
 {
-    (void)state;
     struct scatter        s     = make_scatter(2);
     struct dig_neighbours alone = { 0 };
     struct dig_neighbours list  = { 0 };
@@ -119,9 +116,8 @@ static void any_crew_finds_the_same_list(void **state)
     dig_grains_finish(&s.grains);
 }
 
-static void a_list_can_be_built_again_for_other_grains(void **state)
+TEST(a_list_can_be_built_again_for_other_grains)
 {
-    (void)state;
     struct dig_neighbours list = { 0 };
     struct scatter        s    = make_scatter(1);
     assert_int_equal(dig_neighbours_build(&s.grains, 0.0, s.margin_m, NULL, &list), DIG_OK);
@@ -137,9 +133,8 @@ static void a_list_can_be_built_again_for_other_grains(void **state)
     dig_grains_finish(&s.grains);
 }
 
-static void the_order_is_a_permutation_along_the_cells(void **state)
+TEST(the_order_is_a_permutation_along_the_cells)
 {
-    (void)state;
     struct scatter s = make_scatter(3);
     uint32_t       order[GRAINS];
     bool           seen[GRAINS] = { false };
@@ -166,9 +161,8 @@ static void the_order_is_a_permutation_along_the_cells(void **state)
     dig_grains_finish(&s.grains);
 }
 
-static void no_grains_make_an_empty_list(void **state)
+TEST(no_grains_make_an_empty_list)
 {
-    (void)state;
     struct dig_grains     none = { 0 };
     struct dig_neighbours list = { 0 };
     assert_int_equal(dig_neighbours_build(&none, 0.0, NULL, NULL, &list), DIG_OK);
@@ -178,9 +172,8 @@ static void no_grains_make_an_empty_list(void **state)
     dig_neighbours_finish(NULL);
 }
 
-static void too_many_types_and_senseless_ones_are_refused(void **state)
+TEST(too_many_types_and_senseless_ones_are_refused)
 {
-    (void)state;
     double                at[2] = { 0.0, 0.0 };
     const uint8_t         of[2] = { 0, 1 };
     struct dig_grain_type type[DIG_GRAIN_TYPES_MAX + 1];
@@ -199,18 +192,4 @@ static void too_many_types_and_senseless_ones_are_refused(void **state)
     at[1]            = NAN;
     assert_int_equal(dig_grains_create(2, type, 2, at, at, at, of, &untouched), DIG_EINVAL);
     assert_int_equal(untouched.n, 77);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_near_pair_is_listed_once_and_no_other),
-        cmocka_unit_test(every_near_pair_across_the_sides_is_listed_once),
-        cmocka_unit_test(any_crew_finds_the_same_list),
-        cmocka_unit_test(a_list_can_be_built_again_for_other_grains),
-        cmocka_unit_test(the_order_is_a_permutation_along_the_cells),
-        cmocka_unit_test(no_grains_make_an_empty_list),
-        cmocka_unit_test(too_many_types_and_senseless_ones_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -86,16 +86,14 @@ static void fall_alike(const struct dig_law_material *const m, const size_t step
     dig_world_finish(&world);
 }
 
-static void a_heap_falls_as_in_the_kernel(void **state)
+TEST(a_heap_falls_as_in_the_kernel)
 {
-    (void)state;
     const struct dig_law_material m = dem_material(0.5, 0.5);
     fall_alike(&m, 1000, 1e-11);
 }
 
-static void a_sticky_heap_under_hertz_falls_as_in_the_kernel(void **state)
+TEST(a_sticky_heap_under_hertz_falls_as_in_the_kernel)
 {
-    (void)state;
     struct dig_law_material m = dem_material(0.4, 0.3);
     m.normal_law              = DIG_NORMAL_HERTZ;
     m.rolling_law             = DIG_ROLLING_CDT;
@@ -163,16 +161,14 @@ static void dig_alike(const struct dig_law_material *const m, const size_t steps
     dig_world_finish(&world);
 }
 
-static void a_bucket_feels_what_it_feels_in_the_kernel(void **state)
+TEST(a_bucket_feels_what_it_feels_in_the_kernel)
 {
-    (void)state;
     const struct dig_law_material m = dem_material(0.5, 0.5);
     dig_alike(&m, 800);
 }
 
-static void contacts_remember_until_they_end(void **state)
+TEST(contacts_remember_until_they_end)
 {
-    (void)state;
     struct dig_ode_history map = { 0 };
     assert_null(dig_ode_history_previous(&map, 1, 2));
     // More than the first table holds.
@@ -193,9 +189,8 @@ static void contacts_remember_until_they_end(void **state)
     dig_ode_history_finish(&map);
 }
 
-static void a_world_with_clumps_is_refused(void **state)
+TEST(a_world_with_clumps_is_refused)
 {
-    (void)state;
     const struct dig_law_material m      = dem_material(0.5, 0.5);
     struct dig_world              world  = heap(&m);
     struct dig_bodies             bodies = { .clumps = 1 };
@@ -203,16 +198,4 @@ static void a_world_with_clumps_is_refused(void **state)
     assert_null(dig_ode_bed_create(&world));
     world.bodies = NULL;
     dig_world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_heap_falls_as_in_the_kernel),
-        cmocka_unit_test(a_sticky_heap_under_hertz_falls_as_in_the_kernel),
-        cmocka_unit_test(a_bucket_feels_what_it_feels_in_the_kernel),
-        cmocka_unit_test(contacts_remember_until_they_end),
-        cmocka_unit_test(a_world_with_clumps_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static const struct dig_scene ode_scene = {
     .gravity_mps2 = 9.81,
 };
 
-static void ode_holds_the_walls_and_the_bucket(void **state)
+TEST(ode_holds_the_walls_and_the_bucket)
 {
-    (void)state;
     struct dig_ode_scene *const ode = dig_ode_scene_create(&ode_scene);
     assert_non_null(ode);
     struct dig_wall wall[DIG_WALLS_MAX];
@@ -56,9 +55,8 @@ static size_t collide(const struct dig_ode_scene *const ode, const double centre
 // Spheres that touch one plate only, on its face, from the side ODE's triangles show: here both
 // narrow phases must agree. On the other side, at edges and in corners ODE's does not find what the
 // law needs, which is why ours is used: docs/adr/0002-tool-narrow-phase.md.
-static void odes_collision_agrees_where_it_sees_the_plates(void **state)
+TEST(odes_collision_agrees_where_it_sees_the_plates)
 {
-    (void)state;
     struct dig_ode_scene *const ode    = dig_ode_scene_create(&ode_scene);
     struct dig_tool             tool   = dig_tool_make(&rig_bucket);
     struct dig_random           random = { .state = 5 };
@@ -118,13 +116,4 @@ static void odes_collision_agrees_where_it_sees_the_plates(void **state)
     assert_true(seen >= 400);
     assert_true(missed > 200);
     dig_ode_scene_destroy(ode);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ode_holds_the_walls_and_the_bucket),
-        cmocka_unit_test(odes_collision_agrees_where_it_sees_the_plates),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

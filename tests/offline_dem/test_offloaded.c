@@ -65,24 +65,21 @@ static void digs_agree(const struct dig_scene *const scene)
     host->destroy(host);
 }
 
-static void a_short_dig_gives_the_kernels_curve(void **state)
+TEST(a_short_dig_gives_the_kernels_curve)
 {
-    (void)state;
     const struct dig_scene scene = dem_short_dig_scene(0.03);
     digs_agree(&scene);
 }
 
-static void so_does_one_in_mixed_sticky_grains(void **state)
+TEST(so_does_one_in_mixed_sticky_grains)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.03);
     dem_mix_sticky_grains(&scene);
     digs_agree(&scene);
 }
 
-static void so_does_one_between_sides_that_are_one_and_over_a_layer(void **state)
+TEST(so_does_one_between_sides_that_are_one_and_over_a_layer)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.box.y_min_m      = -0.04;
     scene.box.y_max_m      = 0.04;
@@ -113,16 +110,14 @@ static struct dig_scene clumps_and_rocks(void)
     return scene;
 }
 
-static void so_does_one_in_clumps_between_rocks(void **state)
+TEST(so_does_one_in_clumps_between_rocks)
 {
-    (void)state;
     const struct dig_scene scene = clumps_and_rocks();
     digs_agree(&scene);
 }
 
-static void so_does_one_in_clumps_between_sides_that_are_one(void **state)
+TEST(so_does_one_in_clumps_between_sides_that_are_one)
 {
-    (void)state;
     struct dig_scene scene = clumps_and_rocks();
     scene.box.y_min_m      = -0.04;
     scene.box.y_max_m      = 0.04;
@@ -134,9 +129,8 @@ static void so_does_one_in_clumps_between_sides_that_are_one(void **state)
 
 // The bucket goes in and comes out, grains are raked and taken away: what the processor does to a
 // world in between.
-static void a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was(void **state)
+TEST(a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was)
 {
-    (void)state;
     struct dig_scene scene = dem_short_dig_scene(0.03);
     scene.packing.settle_s = 0.02;
     scene.bed.earlier_digs = 1;
@@ -159,9 +153,8 @@ static void lead_round(const double angle_rad, const double w_radps, struct dig_
     dem_run(world, 1);
 }
 
-static void a_contact_goes_on_across_an_edge(void **state)
+TEST(a_contact_goes_on_across_an_edge)
 {
-    (void)state;
     static const struct dig_bucket bucket  = { .points  = 5,
                                                .x_m     = { 0.0, -0.04, -0.052, -0.04, -0.012 },
                                                .z_m     = { -0.09, -0.072, -0.042, -0.012, 0.0 },
@@ -204,9 +197,8 @@ static enum dig_status poll_late(struct dig_device *const device,
     return status;
 }
 
-static void a_grain_that_got_away_is_refused(void **state)
+TEST(a_grain_that_got_away_is_refused)
 {
-    (void)state;
     const double             x_m[2][3] = { { 0.0, 0.0, 0.0 }, { 0.1, 0.0, 0.0 } };
     struct dig_world         world     = dem_world(2, x_m, dem_material(0.5, 0.5));
     struct dig_device *const host      = dem_host_device_create();
@@ -227,9 +219,8 @@ static void a_grain_that_got_away_is_refused(void **state)
 }
 
 // Its sines are its own, so clumps part from the processor's by rounding: slowly, in a short dig.
-static void a_card_digs_clumps_between_rocks(void **state)
+TEST(a_card_digs_clumps_between_rocks)
 {
-    (void)state;
     struct dig_error         error = { "" };
     struct dig_device *const card  = dig_device_cuda_create(&error);
     if (card == NULL) {
@@ -249,9 +240,8 @@ static void a_card_digs_clumps_between_rocks(void **state)
 }
 
 // Without a card, and where scenes hold what a card does not know.
-static void the_engine_says_what_is_missing(void **state)
+TEST(the_engine_says_what_is_missing)
 {
-    (void)state;
     const struct dig_engine cuda  = dig_engine_cuda();
     struct dig_scene        scene = dem_short_dig_scene(0.03);
     struct dig_error        error = { "" };
@@ -270,9 +260,8 @@ static void the_engine_says_what_is_missing(void **state)
 }
 
 // The card rounds as the processor does and adds in the same order: not a bit may differ.
-static void a_card_gives_the_bits_of_the_processor(void **state)
+TEST(a_card_gives_the_bits_of_the_processor)
 {
-    (void)state;
     struct dig_error         error = { "" };
     struct dig_device *const card  = dig_device_cuda_create(&error);
     if (card == NULL) {
@@ -306,22 +295,4 @@ static void a_card_gives_the_bits_of_the_processor(void **state)
     dig_bed_finish(&on_card);
     host->destroy(host);
     card->destroy(card);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_short_dig_gives_the_kernels_curve),
-        cmocka_unit_test(so_does_one_in_mixed_sticky_grains),
-        cmocka_unit_test(so_does_one_between_sides_that_are_one_and_over_a_layer),
-        cmocka_unit_test(so_does_one_in_clumps_between_rocks),
-        cmocka_unit_test(so_does_one_in_clumps_between_sides_that_are_one),
-        cmocka_unit_test(a_second_dig_in_the_same_bed_goes_on_where_the_first_one_was),
-        cmocka_unit_test(a_contact_goes_on_across_an_edge),
-        cmocka_unit_test(a_grain_that_got_away_is_refused),
-        cmocka_unit_test(a_card_gives_the_bits_of_the_processor),
-        cmocka_unit_test(a_card_digs_clumps_between_rocks),
-        cmocka_unit_test(the_engine_says_what_is_missing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

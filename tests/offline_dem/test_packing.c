@@ -9,9 +9,8 @@
 
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
-static void inserted_grains_are_inside_and_apart(void **state)
+TEST(inserted_grains_are_inside_and_apart)
 {
-    (void)state;
     const struct dig_scene scene = dem_small_scene();
     const size_t           n     = dig_packing_grains(&scene);
     double                 x[512], y[512], z[512];
@@ -32,9 +31,8 @@ static void inserted_grains_are_inside_and_apart(void **state)
     assert_true(top_m <= 0.03 * 0.694 / 0.3);
 }
 
-static void a_seed_names_a_packing(void **state)
+TEST(a_seed_names_a_packing)
 {
-    (void)state;
     const struct dig_scene scene = dem_small_scene();
     double                 x[3][3], y[3], z[3];
     for (uint64_t k = 0; k < 3; k++) {
@@ -44,9 +42,8 @@ static void a_seed_names_a_packing(void **state)
     assert_true(fabs(x[0][0] - x[2][0]) > 0.0);
 }
 
-static void a_column_that_is_full_grows(void **state)
+TEST(a_column_that_is_full_grows)
 {
-    (void)state;
     struct dig_scene scene       = dem_small_scene();
     scene.packing.solid_fraction = 0.45; // above what random insertion reaches
     const size_t n               = dig_packing_grains(&scene);
@@ -59,9 +56,8 @@ static void a_column_that_is_full_grows(void **state)
     assert_true(top_m > 0.03 * 0.694 / 0.45 && top_m < 2.0 * 0.03 * 0.694 / 0.45);
 }
 
-static void what_cannot_fit_is_refused_and_nothing_written(void **state)
+TEST(what_cannot_fit_is_refused_and_nothing_written)
 {
-    (void)state;
     struct dig_scene scene = dem_small_scene();
     scene.box.y_max_m      = scene.box.y_min_m + 1.9 * GRAIN_m;
     double x[512] = { 0.0 }, y[512] = { 0.0 }, z[512] = { 0.0 };
@@ -73,9 +69,8 @@ static void what_cannot_fit_is_refused_and_nothing_written(void **state)
     }
 }
 
-static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
+TEST(a_poured_bed_is_level_and_lies_on_its_floor)
 {
-    (void)state;
     const struct dig_scene scene = dem_small_scene();
     struct dig_bed         bed;
     assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
@@ -125,9 +120,8 @@ static void a_poured_bed_is_level_and_lies_on_its_floor(void **state)
     dig_bed_finish(NULL);
 }
 
-static void pouring_twice_gives_the_same_bits(void **state)
+TEST(pouring_twice_gives_the_same_bits)
 {
-    (void)state;
     const struct dig_scene scene = dem_small_scene();
     struct dig_bed         a, b;
     assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 5, NULL, &a, NULL), DIG_OK);
@@ -137,17 +131,4 @@ static void pouring_twice_gives_the_same_bits(void **state)
     assert_memory_equal(a.z_m, b.z_m, a.grains * sizeof *a.z_m);
     dig_bed_finish(&a);
     dig_bed_finish(&b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inserted_grains_are_inside_and_apart),
-        cmocka_unit_test(a_seed_names_a_packing),
-        cmocka_unit_test(a_column_that_is_full_grows),
-        cmocka_unit_test(what_cannot_fit_is_refused_and_nothing_written),
-        cmocka_unit_test(a_poured_bed_is_level_and_lies_on_its_floor),
-        cmocka_unit_test(pouring_twice_gives_the_same_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,9 +16,8 @@ static double fold(const double y_m)
     return dig_period_fold(y_m, PERIOD_m, dig_period_inverse(PERIOD_m));
 }
 
-static void a_distance_folds_to_the_nearest_image(void **state)
+TEST(a_distance_folds_to_the_nearest_image)
 {
-    (void)state;
     for (int k = -40; k <= 40; k++) {
         const double y_m     = (0.07 * k + 0.001) * PERIOD_m;
         const double nearest = remainder(y_m, PERIOD_m);
@@ -27,9 +26,8 @@ static void a_distance_folds_to_the_nearest_image(void **state)
     }
 }
 
-static void a_grain_that_leaves_on_one_side_comes_in_on_the_other(void **state)
+TEST(a_grain_that_leaves_on_one_side_comes_in_on_the_other)
 {
-    (void)state;
     const double     x[1][3]        = { { 0.0, 0.45 * PERIOD_m, 0.0 } };
     struct dig_world world          = dem_world(1, x, dem_material(0.5, 0.5));
     world.period_y_m                = PERIOD_m;
@@ -60,9 +58,8 @@ static struct dig_world make_collision(const double y_m)
     return world;
 }
 
-static void a_pair_across_the_border_moves_as_in_the_middle(void **state)
+TEST(a_pair_across_the_border_moves_as_in_the_middle)
 {
-    (void)state;
     const double     shift_m = 0.5 * PERIOD_m;
     struct dig_world middle  = make_collision(0.0);
     struct dig_world border  = make_collision(shift_m);
@@ -90,9 +87,8 @@ static void a_pair_across_the_border_moves_as_in_the_middle(void **state)
 }
 
 // A cloud that falls in on itself and reaches around the period.
-static void momentum_is_kept_across_the_border(void **state)
+TEST(momentum_is_kept_across_the_border)
 {
-    (void)state;
     struct dig_random random = { .state = 3 };
     double            x[GRAINS][3];
     for (size_t i = 0; i < GRAINS; i++) {
@@ -130,15 +126,4 @@ static void momentum_is_kept_across_the_border(void **state)
         assert_close(p[1][k], p[0][k], 1e-11);
     }
     dig_world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_distance_folds_to_the_nearest_image),
-        cmocka_unit_test(a_grain_that_leaves_on_one_side_comes_in_on_the_other),
-        cmocka_unit_test(a_pair_across_the_border_moves_as_in_the_middle),
-        cmocka_unit_test(momentum_is_kept_across_the_border),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

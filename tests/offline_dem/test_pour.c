@@ -68,9 +68,8 @@ static double mass_of(const struct dig_bed *const bed, const double radius_m)
     return sum_m3;
 }
 
-static void three_sizes_are_poured_by_mass(void **state)
+TEST(three_sizes_are_poured_by_mass)
 {
-    (void)state;
     struct dig_scene             scene = small_scene();
     const struct dig_clump_shape shape = { 0 };
     scene.bed.sizes                    = 3;
@@ -97,9 +96,8 @@ static void three_sizes_are_poured_by_mass(void **state)
     dig_bed_finish(&bed);
 }
 
-static void clumps_stay_whole_and_are_cut_whole(void **state)
+TEST(clumps_stay_whole_and_are_cut_whole)
 {
-    (void)state;
     struct dig_scene scene = small_scene();
     scene.bed.clump =
         (struct dig_clump){ 3, { -1.0, 1.0, 0.3 }, { 0.0, 0.0, 0.8 }, { 0 }, { 1.0, 1.0, 0.7 } };
@@ -139,9 +137,8 @@ static void clumps_stay_whole_and_are_cut_whole(void **state)
     dig_bed_finish(&bed);
 }
 
-static void no_grain_is_poured_into_a_rock_or_through_it(void **state)
+TEST(no_grain_is_poured_into_a_rock_or_through_it)
 {
-    (void)state;
     struct dig_scene scene = small_scene();
     scene.bed.obstacles    = 2;
     scene.bed.obstacle[0]  = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_SPHERE,
@@ -170,9 +167,8 @@ static void no_grain_is_poured_into_a_rock_or_through_it(void **state)
     dig_bed_finish(&bed);
 }
 
-static void layers_lie_where_they_are_wanted_and_weigh_what_they_should(void **state)
+TEST(layers_lie_where_they_are_wanted_and_weigh_what_they_should)
 {
-    (void)state;
     struct dig_scene scene = small_scene();
     scene.bed.materials    = 1;
     scene.bed.material[0]  = (struct dig_other_material){ "ore", 0.9, 0.9, 4000.0, 0.2 };
@@ -190,9 +186,8 @@ static void layers_lie_where_they_are_wanted_and_weigh_what_they_should(void **s
     dig_bed_finish(&bed);
 }
 
-static void the_ground_has_the_profile_it_is_given(void **state)
+TEST(the_ground_has_the_profile_it_is_given)
 {
-    (void)state;
     struct dig_scene scene   = small_scene();
     scene.bed.surface        = 2;
     scene.bed.surface_x_m[1] = 0.06;
@@ -212,9 +207,8 @@ static void the_ground_has_the_profile_it_is_given(void **state)
 }
 
 // More grains lie below the same ground.
-static void a_pressed_bed_is_denser(void **state)
+TEST(a_pressed_bed_is_denser)
 {
-    (void)state;
     struct dig_scene scene      = small_scene();
     size_t           below[2]   = { 0, 0 };
     const double     press_Pa[] = { 0.0, 1e4 };
@@ -237,9 +231,8 @@ static void a_pressed_bed_is_denser(void **state)
     assert_int_equal(bed.grains, 77);
 }
 
-static void a_bed_that_was_dug_before_digs_differently_and_repeats(void **state)
+TEST(a_bed_that_was_dug_before_digs_differently_and_repeats)
 {
-    (void)state;
     struct dig_scene     scene = small_scene();
     struct dig_bed       bed   = pour(&scene);
     struct dig_recording r[4]  = { { 0 } };
@@ -261,9 +254,8 @@ static void a_bed_that_was_dug_before_digs_differently_and_repeats(void **state)
     dig_bed_finish(&bed);
 }
 
-static void what_cannot_fit_is_refused_and_nothing_written(void **state)
+TEST(what_cannot_fit_is_refused_and_nothing_written)
 {
-    (void)state;
     struct dig_scene             scene = small_scene();
     const struct dig_clump_shape shape = { 0 };
     struct dig_bed               bed   = { .grains = 77 };
@@ -279,9 +271,8 @@ static void what_cannot_fit_is_refused_and_nothing_written(void **state)
     assert_int_equal(bed.grains, 77);
 }
 
-static void the_ground_may_differ_across_the_bed(void **state)
+TEST(the_ground_may_differ_across_the_bed)
 {
-    (void)state;
     struct dig_scene scene = small_scene();
     scene.bed.profiles     = 2;
     scene.bed.profile[0] = (struct dig_ground_profile){ -0.02, 2, { 0.0, 0.06 }, { 0.036, 0.028 } };
@@ -299,20 +290,4 @@ static void the_ground_may_differ_across_the_bed(void **state)
     assert_true(top_m[0] > top_m[1] + GRAIN_m);
     assert_true(top_m[0] > 0.028);
     dig_bed_finish(&bed);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_sizes_are_poured_by_mass),
-        cmocka_unit_test(clumps_stay_whole_and_are_cut_whole),
-        cmocka_unit_test(no_grain_is_poured_into_a_rock_or_through_it),
-        cmocka_unit_test(layers_lie_where_they_are_wanted_and_weigh_what_they_should),
-        cmocka_unit_test(the_ground_has_the_profile_it_is_given),
-        cmocka_unit_test(the_ground_may_differ_across_the_bed),
-        cmocka_unit_test(a_pressed_bed_is_denser),
-        cmocka_unit_test(a_bed_that_was_dug_before_digs_differently_and_repeats),
-        cmocka_unit_test(what_cannot_fit_is_refused_and_nothing_written),
-    };
-    return cmocka_run_group_tests_name("pour", tests, NULL, NULL);
 }

@@ -101,9 +101,8 @@ static double our_angle(const double rolling, const int seed)
     return angle_deg(bin);
 }
 
-static void slump_angles_are_those_of_liggghts_within_three_degrees(void **state)
+TEST(slump_angles_are_those_of_liggghts_within_three_degrees)
 {
-    (void)state;
     const double rolling[] = { 0.0, 0.3, 0.9 };
     const int    seeds     = getenv("DIG_TEST_LONG") != NULL ? SEEDS : 1;
     double       before    = 0.0;
@@ -122,12 +121,4 @@ static void slump_angles_are_those_of_liggghts_within_three_degrees(void **state
         assert_true(theirs > before + 3.0);
         before = theirs;
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slump_angles_are_those_of_liggghts_within_three_degrees),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

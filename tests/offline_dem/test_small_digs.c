@@ -220,18 +220,16 @@ static int dig_all(void **state)
     return 0;
 }
 
-static void liggghts_dug_enough_beds(void **state)
+TEST(liggghts_dug_enough_beds)
 {
-    (void)state;
     for (int g = 0; g < GRAVELS; g++) {
         assert_true(theirs[g].n >= BEDS_LEAST);
         assert_true(theirs[g].counted >= 12);
     }
 }
 
-static void beds_hold_as_many_grains_as_in_liggghts(void **state)
+TEST(beds_hold_as_many_grains_as_in_liggghts)
 {
-    (void)state;
     int bad = 0;
     for (int g = 0; g < GRAVELS; g++) {
         bad += is_off(gravel[g].name, mean_of(ours[g].counted, ours[g].spheres),
@@ -240,9 +238,8 @@ static void beds_hold_as_many_grains_as_in_liggghts(void **state)
     assert_int_equal(bad, 0);
 }
 
-static void phase_means_agree_with_liggghts(void **state)
+TEST(phase_means_agree_with_liggghts)
 {
-    (void)state;
     static const char *const phase_name[PHASES] = { "down", "drag", "turn" };
 
     int bad = 0;
@@ -275,9 +272,8 @@ static struct mean strength(const struct beds *const b, const int g)
     return mean_of(b->n, x);
 }
 
-static void signed_differences_agree_with_liggghts(void **state)
+TEST(signed_differences_agree_with_liggghts)
 {
-    (void)state;
     int bad = 0;
     for (int g = 0; g < GRAVELS; g++) {
         bad += is_off(gravel[g].name, strength(&ours[g], g), strength(&theirs[g], g), 0.05, OF_6);
@@ -285,13 +281,4 @@ static void signed_differences_agree_with_liggghts(void **state)
     assert_int_equal(bad, 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(liggghts_dug_enough_beds),
-        cmocka_unit_test(beds_hold_as_many_grains_as_in_liggghts),
-        cmocka_unit_test(phase_means_agree_with_liggghts),
-        cmocka_unit_test(signed_differences_agree_with_liggghts),
-    };
-    return cmocka_run_group_tests_name("small digs", tests, dig_all, NULL);
-}
+TESTS_WITH(dig_all, NULL)

@@ -19,9 +19,8 @@ static size_t open_descriptors(void)
     return open_now;
 }
 
-static void every_dig_is_done_once_on_any_number_of_workers(void **state)
+TEST_WITH(every_dig_is_done_once_on_any_number_of_workers, before_each, NULL)
 {
-    (void)state;
     const size_t   before = open_descriptors();
     struct outcome o      = sweep_by("one.sqlite", 2, 1);
     assert_int_equal(o.status, DIG_OK);
@@ -44,9 +43,8 @@ static void every_dig_is_done_once_on_any_number_of_workers(void **state)
     assert_int_equal(open_descriptors(), before);
 }
 
-static void what_is_there_is_not_begun_again(void **state)
+TEST_WITH(what_is_there_is_not_begun_again, before_each, NULL)
 {
-    (void)state;
     assert_int_equal(sweep_by("again.sqlite", 1, 2).status, DIG_OK);
     mischief         = REFUSE_TO_START;
     struct outcome o = sweep_by("again.sqlite", 1, 2);
@@ -60,9 +58,8 @@ static void what_is_there_is_not_begun_again(void **state)
     assert_int_equal(marks('d'), 2 * DIGS_A_PACKING);
 }
 
-static void a_killed_worker_costs_its_unfinished_dig_only(void **state)
+TEST_WITH(a_killed_worker_costs_its_unfinished_dig_only, before_each, NULL)
 {
-    (void)state;
     mischief               = DIE_ONCE;
     const struct outcome o = sweep_by("killed.sqlite", 1, 2);
     assert_int_equal(o.status, DIG_OK);
@@ -73,9 +70,8 @@ static void a_killed_worker_costs_its_unfinished_dig_only(void **state)
     assert_int_equal(marks('d'), DIGS_A_PACKING + 1);     // its first dig was not dug again
 }
 
-static void beds_that_cannot_be_dug_are_told_and_the_others_are_dug(void **state)
+TEST_WITH(beds_that_cannot_be_dug_are_told_and_the_others_are_dug, before_each, NULL)
 {
-    (void)state;
     mischief         = DIE_ALWAYS;
     struct outcome o = sweep_by("dying.sqlite", 1, 2);
     assert_int_equal(o.status, DIG_EIO);
@@ -106,9 +102,8 @@ static void beds_that_cannot_be_dug_are_told_and_the_others_are_dug(void **state
 }
 
 // The moment is that of the varied scene: the engine was given it.
-static void an_effect_is_put_into_the_scene_of_its_beds_alone(void **state)
+TEST_WITH(an_effect_is_put_into_the_scene_of_its_beds_alone, before_each, NULL)
 {
-    (void)state;
     const struct dig_scene      scene    = fixture_scene();
     const struct dig_plan_point points[] = {
         { .gravel = { { .3, .2, 2500 } }, .packings = 1 },
@@ -133,15 +128,4 @@ static void an_effect_is_put_into_the_scene_of_its_beds_alone(void **state)
     dig_store_close(store);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(every_dig_is_done_once_on_any_number_of_workers, before_each),
-        cmocka_unit_test_setup(what_is_there_is_not_begun_again, before_each),
-        cmocka_unit_test_setup(a_killed_worker_costs_its_unfinished_dig_only, before_each),
-        cmocka_unit_test_setup(beds_that_cannot_be_dug_are_told_and_the_others_are_dug,
-                               before_each),
-        cmocka_unit_test_setup(an_effect_is_put_into_the_scene_of_its_beds_alone, before_each),
-    };
-    return cmocka_run_group_tests_name("sweep", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -9,9 +9,8 @@
 #include <sys/wait.h>
 #include <time.h>
 
-static void a_killed_sweep_takes_its_workers_along_and_is_resumed(void **state)
+TEST_WITH(a_killed_sweep_takes_its_workers_along_and_is_resumed, before_each, NULL)
 {
-    (void)state;
     assert_int_equal(sweep_by("parent.sqlite", 1, 2).status, DIG_OK);
     mischief = SLEEP;
     int alive[2]; // its other end is open as long as one of them lives
@@ -65,9 +64,8 @@ static void listen_to(void *const context, const struct dig_sweep_state *const s
     told->most_under_way = fmax(told->most_under_way, s->digs_under_way);
 }
 
-static void a_stop_keeps_what_is_finished_and_ends_at_once(void **state)
+TEST_WITH(a_stop_keeps_what_is_finished_and_ends_at_once, before_each, NULL)
 {
-    (void)state;
     assert_int_equal(sweep_by("stop.sqlite", 1, 2).status, DIG_OK);
     mischief                                = DAWDLE;
     stop                                    = 0;
@@ -93,9 +91,8 @@ static void a_stop_keeps_what_is_finished_and_ends_at_once(void **state)
     assert_int_equal(check_table("stop.sqlite").runs, DIGS_A_PACKING);
 }
 
-static void after_the_time_limit_nothing_is_begun(void **state)
+TEST_WITH(after_the_time_limit_nothing_is_begun, before_each, NULL)
 {
-    (void)state;
     const struct dig_sweep_options options = { .workers = 2, .time_limit_s = 0.0 };
     const struct outcome           o       = sweep("limit.sqlite", 1, &options);
     assert_int_equal(o.status, DIG_OK);
@@ -104,9 +101,8 @@ static void after_the_time_limit_nothing_is_begun(void **state)
     assert_int_equal(marks('p'), 0);
 }
 
-static void progress_is_told_after_each_dig(void **state)
+TEST_WITH(progress_is_told_after_each_dig, before_each, NULL)
 {
-    (void)state;
     struct told                    told    = { .times = 0 };
     const struct dig_sweep_options options = {
         .workers = 2, .time_limit_s = (double)INFINITY, .report = listen_to, .context = &told
@@ -116,13 +112,4 @@ static void progress_is_told_after_each_dig(void **state)
     assert_int_equal(told.done, DIGS_A_PACKING);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_killed_sweep_takes_its_workers_along_and_is_resumed, before_each),
-        cmocka_unit_test_setup(a_stop_keeps_what_is_finished_and_ends_at_once, before_each),
-        cmocka_unit_test_setup(after_the_time_limit_nothing_is_begun, before_each),
-        cmocka_unit_test_setup(progress_is_told_after_each_dig, before_each),
-    };
-    return cmocka_run_group_tests_name("sweep", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -46,9 +46,8 @@ static double contact_s(const struct dig_law_material *const m)
     return (double)steps * 1e-8;
 }
 
-static void a_contact_takes_at_least_twenty_steps(void **state)
+TEST(a_contact_takes_at_least_twenty_steps)
 {
-    (void)state;
     for (int k = 0; k < 12; k += 5) {
         const struct dig_law_material *const m      = law_of(k);
         const double                         step_s = step_of_s(m, GRAIN_m, DENSITY);
@@ -92,9 +91,8 @@ static double spin_after(const double step_s, const size_t steps)
     return w;
 }
 
-static void spin_dies_out_at_the_limit_and_grows_well_above(void **state)
+TEST(spin_dies_out_at_the_limit_and_grows_well_above)
 {
-    (void)state;
     const struct dig_law_material m      = dem_material(0.5, 0.3);
     const double                  step_s = step_of_s(&m, GRAIN_m, DENSITY);
     assert_true(fabs(spin_after(step_s, 1)) < 0.2);
@@ -103,9 +101,8 @@ static void spin_dies_out_at_the_limit_and_grows_well_above(void **state)
     assert_true(fabs(spin_after(2.25 * step_s, 20)) > 1.0);
 }
 
-static void stiffer_smaller_and_lighter_grains_ask_for_shorter_steps(void **state)
+TEST(stiffer_smaller_and_lighter_grains_ask_for_shorter_steps)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct dig_law_material m    = *law_of(k);
         const double            base = step_of_s(&m, GRAIN_m, DENSITY);
@@ -114,14 +111,4 @@ static void stiffer_smaller_and_lighter_grains_ask_for_shorter_steps(void **stat
         m.young_Pa *= 30.0;
         assert_true(step_of_s(&m, GRAIN_m, DENSITY) < base);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_contact_takes_at_least_twenty_steps),
-        cmocka_unit_test(spin_dies_out_at_the_limit_and_grows_well_above),
-        cmocka_unit_test(stiffer_smaller_and_lighter_grains_ask_for_shorter_steps),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,9 +43,8 @@ static double sampled_distance(const size_t plate, const double p[3])
     return best;
 }
 
-static void the_closest_point_is_the_closest_of_all(void **state)
+TEST(the_closest_point_is_the_closest_of_all)
 {
-    (void)state;
     const struct dig_tool tool   = dig_tool_make(&rig_bucket);
     struct dig_random     random = { .state = 1 };
     assert_int_equal(tool.plates, 6);
@@ -65,9 +64,8 @@ static void the_closest_point_is_the_closest_of_all(void **state)
     }
 }
 
-static void body_and_world_agree_with_the_drawing(void **state)
+TEST(body_and_world_agree_with_the_drawing)
 {
-    (void)state;
     struct dig_tool tool = dig_tool_make(&rig_bucket);
     dig_tool_place(&tool, (struct dig_pose){ 1.0, 2.0, 0.5 }, 0.0, 0.0, 0.0);
     // The tooth is at pin + L (sin theta, -cos theta).
@@ -126,9 +124,8 @@ static void outside_of_corner(const size_t corner, const double d_m, double p[3]
     p[2] = b->z_m[corner] + d_m * n[1] / l;
 }
 
-static void an_edge_is_one_contact_and_a_corner_two(void **state)
+TEST(an_edge_is_one_contact_and_a_corner_two)
 {
-    (void)state;
     // On the face of plate B-C, far from all edges.
     const double ux = 0.012, uz = 0.03, l = hypot(ux, uz);
     const double mid[2]  = { -0.046, -0.027 };
@@ -157,9 +154,8 @@ static void an_edge_is_one_contact_and_a_corner_two(void **state)
 }
 
 // A face's neighbour across an edge must not be felt twice near the edge.
-static void near_an_edge_the_face_alone_counts(void **state)
+TEST(near_an_edge_the_face_alone_counts)
 {
-    (void)state;
     const double ux = 0.012, uz = 0.03, l = hypot(ux, uz);
     const double d    = GRAIN_m - DEPTH_m;
     const double s    = 1e-4; // along the plate from B, far less than the grain's print
@@ -188,9 +184,8 @@ static void lead(const double way_m, const double d_m, double x[3], double norma
 
 // Pressed and unable to turn, it drags all the way: what the contact knows goes with it from plate
 // to edge to plate. Forgetting would show as a step of the friction.
-static void a_contact_goes_on_across_an_edge(void **state)
+TEST(a_contact_goes_on_across_an_edge)
 {
-    (void)state;
     const double     x[1][3] = { { -0.06, 0.0, -0.042 } };
     struct dig_world world   = dem_world(1, x, dem_material(0.5, 0.0));
     struct dig_tool  tool    = dig_tool_make(&rig_bucket);
@@ -219,9 +214,8 @@ static void a_contact_goes_on_across_an_edge(void **state)
 
 // At the contact, a tool that turns and one that is shifted with the velocity the rotation has
 // there are the same.
-static void a_turning_plate_moves_as_its_contact_point_does(void **state)
+TEST(a_turning_plate_moves_as_its_contact_point_does)
 {
-    (void)state;
     const double mid[2] = { -0.046, -0.027 }, l = hypot(0.012, 0.03), w = 2.0;
     const double d       = GRAIN_m - DEPTH_m;
     const double x[1][3] = { { mid[0] - d * 0.03 / l, 0.0, mid[1] + d * 0.012 / l } };
@@ -243,9 +237,8 @@ static void a_turning_plate_moves_as_its_contact_point_does(void **state)
     }
 }
 
-static void a_grain_on_a_plate_gives_its_weight_and_its_moment(void **state)
+TEST(a_grain_on_a_plate_gives_its_weight_and_its_moment)
 {
-    (void)state;
     struct dig_bucket flat = { .points = 3, .x_m = { 0.1, 0.0, 0.05 }, .z_m = { 0.0, 0.0, -0.05 } };
     flat.width_m           = 0.05;
     const double     x[1][3] = { { 0.03, 0.01, GRAIN_m } };
@@ -263,9 +256,8 @@ static void a_grain_on_a_plate_gives_its_weight_and_its_moment(void **state)
 
 // The plate of a tool that moves takes a grain along: at the contact the tool has the velocity of
 // its pin and of its rotation.
-static void a_moving_plate_carries_a_grain(void **state)
+TEST(a_moving_plate_carries_a_grain)
 {
-    (void)state;
     struct dig_bucket flat = { .points = 3, .x_m = { 0.1, -0.1, 0.0 }, .z_m = { 0.0, 0.0, -0.05 } };
     flat.width_m           = 0.05;
     const double     x[1][3] = { { 0.0, 0.0, GRAIN_m } };
@@ -279,19 +271,4 @@ static void a_moving_plate_carries_a_grain(void **state)
     }
     assert_close(world.grains.motion[0].v_mps[0], 0.1, 1e-3);
     dig_world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_closest_point_is_the_closest_of_all),
-        cmocka_unit_test(body_and_world_agree_with_the_drawing),
-        cmocka_unit_test(an_edge_is_one_contact_and_a_corner_two),
-        cmocka_unit_test(near_an_edge_the_face_alone_counts),
-        cmocka_unit_test(a_contact_goes_on_across_an_edge),
-        cmocka_unit_test(a_turning_plate_moves_as_its_contact_point_does),
-        cmocka_unit_test(a_grain_on_a_plate_gives_its_weight_and_its_moment),
-        cmocka_unit_test(a_moving_plate_carries_a_grain),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

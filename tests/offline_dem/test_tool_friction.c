@@ -73,9 +73,8 @@ static double ratio(const struct dig_recording *const r, const double from_s, co
     return along_N / down_N;
 }
 
-static void a_grain_slides_and_rolls_by_what_is_left_at_a_smoother_bucket(void **state)
+TEST(a_grain_slides_and_rolls_by_what_is_left_at_a_smoother_bucket)
 {
-    (void)state;
     const double smoothness[] = { 0.0, 0.4, 0.75 };
     for (int engine = 0; engine < ENGINES; engine++) {
         for (size_t i = 0; i < 3; i++) {
@@ -89,12 +88,4 @@ static void a_grain_slides_and_rolls_by_what_is_left_at_a_smoother_bucket(void *
             dig_recording_finish(&r);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_grain_slides_and_rolls_by_what_is_left_at_a_smoother_bucket),
-    };
-    return cmocka_run_group_tests_name("tool_friction", tests, NULL, NULL);
 }

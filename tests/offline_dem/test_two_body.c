@@ -31,9 +31,8 @@ static struct dig_world on_floor(const double friction, const double rolling, co
     return world;
 }
 
-static void two_grains_part_with_the_restitution_they_were_given(void **state)
+TEST(two_grains_part_with_the_restitution_they_were_given)
 {
-    (void)state;
     const double restitution[] = { 0.2, 0.5, 0.9 };
     for (size_t k = 0; k < 3; k++) {
         const double            x[2][3]  = { { 0.0, 0.0, 0.0 }, { 2.001 * GRAIN_m, 0.0, 0.0 } };
@@ -53,9 +52,8 @@ static void two_grains_part_with_the_restitution_they_were_given(void **state)
     }
 }
 
-static void a_grain_leaves_a_wall_with_its_restitution(void **state)
+TEST(a_grain_leaves_a_wall_with_its_restitution)
 {
-    (void)state;
     struct dig_world world = on_floor(0.5, 0.5, 0.0);
     world.gravity_mps2[2]  = 0.0;
     set_stiff(&world, 0.5, 0.5, 0.6);
@@ -68,9 +66,8 @@ static void a_grain_leaves_a_wall_with_its_restitution(void **state)
 
 // Sliding all through the impact: the wall takes mu (1 + e) v_n off the tangential velocity and
 // gives the grain 5/2 of that, over its radius, in spin.
-static void a_grazing_impact_slides(void **state)
+TEST(a_grazing_impact_slides)
 {
-    (void)state;
     const double     mu    = 0.1;
     struct dig_world world = on_floor(mu, 0.0, 0.0);
     world.gravity_mps2[2]  = 0.0;
@@ -88,9 +85,8 @@ static void a_grazing_impact_slides(void **state)
 
 // The other limit: no grain leaves a steep impact with more tangential speed of its contact point
 // than it came with, and friction has not taken more than Coulomb allows.
-static void a_steep_impact_sticks_within_coulomb(void **state)
+TEST(a_steep_impact_sticks_within_coulomb)
 {
-    (void)state;
     struct dig_world world = on_floor(0.9, 0.0, 0.0);
     world.gravity_mps2[2]  = 0.0;
     set_stiff(&world, 0.9, 0.0, 0.5);
@@ -108,9 +104,8 @@ static void a_steep_impact_sticks_within_coulomb(void **state)
     dig_world_finish(&world);
 }
 
-static void a_sliding_grain_ends_rolling_at_five_sevenths(void **state)
+TEST(a_sliding_grain_ends_rolling_at_five_sevenths)
 {
-    (void)state;
     struct dig_world world          = on_floor(0.5, 0.0, 0.0);
     world.grains.motion[0].v_mps[0] = 0.3;
     // Sliding ends after 2/7 v0 / (mu g).
@@ -134,17 +129,15 @@ static double acceleration(const double friction, const double rolling, const do
     return a;
 }
 
-static void a_grain_that_may_roll_does_so_at_five_sevenths_of_the_slope(void **state)
+TEST(a_grain_that_may_roll_does_so_at_five_sevenths_of_the_slope)
 {
-    (void)state;
     const double slope = 0.2;
     const double rolls = 5.0 / 7.0 * GRAVITY * sin(slope);
     assert_close(acceleration(0.5, 0.0, slope), rolls, 0.01 * rolls);
 }
 
-static void a_grain_slips_where_the_slope_asks_for_more_friction_than_there_is(void **state)
+TEST(a_grain_slips_where_the_slope_asks_for_more_friction_than_there_is)
 {
-    (void)state;
     // Rolling without slip needs tan(slope) <= 7/2 mu.
     const double slope = 0.5;
     const double slips = GRAVITY * (sin(slope) - 0.1 * cos(slope));
@@ -154,9 +147,8 @@ static void a_grain_slips_where_the_slope_asks_for_more_friction_than_there_is(v
     assert_close(acceleration(0.1, 0.0, below), 5.0 / 7.0 * GRAVITY * sin(below), 0.03);
 }
 
-static void a_grain_stays_below_the_rolling_friction_angle_and_rolls_above(void **state)
+TEST(a_grain_stays_below_the_rolling_friction_angle_and_rolls_above)
 {
-    (void)state;
     const double rolling = 0.3;
     const double below   = atan(rolling) - 0.03;
     const double above   = atan(rolling) + 0.1;
@@ -170,9 +162,8 @@ static void a_grain_stays_below_the_rolling_friction_angle_and_rolls_above(void 
     assert_close(acceleration(0.9, rolling, above), rolls, 0.02 * rolls);
 }
 
-static void a_grain_that_cannot_roll_slides_only_above_the_friction_angle(void **state)
+TEST(a_grain_that_cannot_roll_slides_only_above_the_friction_angle)
 {
-    (void)state;
     const double mu = 0.3;
     assert_close(acceleration(mu, 5.0, atan(mu) - 0.03), 0.0, 0.02);
     const double above  = atan(mu) + 0.1;
@@ -181,9 +172,8 @@ static void a_grain_that_cannot_roll_slides_only_above_the_friction_angle(void *
 }
 
 // Without sliding friction only the rolling torque mu_r r m g acts: spin falls linearly.
-static void rolling_friction_takes_spin_off_linearly(void **state)
+TEST(rolling_friction_takes_spin_off_linearly)
 {
-    (void)state;
     const double     rolling          = 0.3;
     struct dig_world world            = on_floor(0.0, rolling, 0.0);
     world.grains.motion[0].w_radps[0] = 50.0;
@@ -193,9 +183,8 @@ static void rolling_friction_takes_spin_off_linearly(void **state)
     dig_world_finish(&world);
 }
 
-static void spin_about_the_normal_is_free(void **state)
+TEST(spin_about_the_normal_is_free)
 {
-    (void)state;
     struct dig_world world            = on_floor(0.9, 0.9, 0.0);
     world.grains.motion[0].w_radps[2] = 50.0;
     dem_run_for(&world, 0.02);
@@ -203,31 +192,11 @@ static void spin_about_the_normal_is_free(void **state)
     dig_world_finish(&world);
 }
 
-static void a_grain_at_rest_presses_with_its_weight(void **state)
+TEST(a_grain_at_rest_presses_with_its_weight)
 {
-    (void)state;
     struct dig_world world = on_floor(0.5, 0.5, 0.0);
     dem_run_for(&world, 0.1);
     assert_close(world.on_walls.f_N[2], -GRAIN_kg * GRAVITY, 1e-6 * GRAIN_kg * GRAVITY);
     assert_close(dig_grains_kinetic_J(&world.grains), 0.0, 1e-16);
     dig_world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_grains_part_with_the_restitution_they_were_given),
-        cmocka_unit_test(a_grain_leaves_a_wall_with_its_restitution),
-        cmocka_unit_test(a_grazing_impact_slides),
-        cmocka_unit_test(a_steep_impact_sticks_within_coulomb),
-        cmocka_unit_test(a_sliding_grain_ends_rolling_at_five_sevenths),
-        cmocka_unit_test(a_grain_that_may_roll_does_so_at_five_sevenths_of_the_slope),
-        cmocka_unit_test(a_grain_slips_where_the_slope_asks_for_more_friction_than_there_is),
-        cmocka_unit_test(a_grain_stays_below_the_rolling_friction_angle_and_rolls_above),
-        cmocka_unit_test(a_grain_that_cannot_roll_slides_only_above_the_friction_angle),
-        cmocka_unit_test(rolling_friction_takes_spin_off_linearly),
-        cmocka_unit_test(spin_about_the_normal_is_free),
-        cmocka_unit_test(a_grain_at_rest_presses_with_its_weight),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,9 +27,8 @@ static struct dig_scene make(const enum dig_effect_id effect, const double magni
     return varied;
 }
 
-static void every_effect_of_a_bed_makes_another_scene(void **state)
+TEST(every_effect_of_a_bed_makes_another_scene)
 {
-    (void)state;
     const struct dig_scene plain = rig();
     char                   before[65];
     dig_scene_hash(&plain, before);
@@ -60,9 +59,8 @@ static void every_effect_of_a_bed_makes_another_scene(void **state)
     }
 }
 
-static void what_sticks_to_itself_sticks_to_the_bucket(void **state)
+TEST(what_sticks_to_itself_sticks_to_the_bucket)
 {
-    (void)state;
     const struct dig_scene cohesive = make(DIG_EFFECT_COHESION, 2e4);
     assert_close(cohesive.laws.cohesion_Jpm3, 2e4, 0.0);
     assert_close(cohesive.laws.adhesion_Jpm3, 2e4, 0.0);
@@ -71,9 +69,8 @@ static void what_sticks_to_itself_sticks_to_the_bucket(void **state)
     assert_close(adhesive.laws.adhesion_Jpm3, 2e4, 0.0);
 }
 
-static void sizes_are_mixed_as_in_the_reference(void **state)
+TEST(sizes_are_mixed_as_in_the_reference)
 {
-    (void)state;
     const struct dig_scene s = make(DIG_EFFECT_POLYDISPERSITY, 5.0 / 3.0);
     assert_int_equal(s.bed.sizes, 3);
     assert_close(s.bed.size[0].diameter_m, 0.006, 1e-12);
@@ -82,9 +79,8 @@ static void sizes_are_mixed_as_in_the_reference(void **state)
     assert_close(s.time_step_s, 5e-5, 1e-15);
 }
 
-static void a_slope_passes_below_every_tooth_and_touches_one(void **state)
+TEST(a_slope_passes_below_every_tooth_and_touches_one)
 {
-    (void)state;
     for (double slope = -12.0; slope <= 12.0; slope += 6.0) {
         if (fabs(slope) < 1.0) {
             continue;
@@ -107,9 +103,8 @@ static void a_slope_passes_below_every_tooth_and_touches_one(void **state)
     assert_close(dig_scene_ground_m(&steep, 0.31, 0.0), 0.015, 1e-12);
 }
 
-static void a_layer_is_hard_or_loose_by_its_sign(void **state)
+TEST(a_layer_is_hard_or_loose_by_its_sign)
 {
-    (void)state;
     struct dig_scene s = make(DIG_EFFECT_LAYERING, 0.05);
     assert_close(s.bed.material[0].friction, 0.9, 0.0);
     assert_close(s.bed.layer[0].to_m, 0.05, 1e-15);
@@ -119,9 +114,8 @@ static void a_layer_is_hard_or_loose_by_its_sign(void **state)
     assert_close(s.bed.material[0].density_kgpm3, 1500.0, 0.0);
 }
 
-static void an_obstacle_stands_in_the_way(void **state)
+TEST(an_obstacle_stands_in_the_way)
 {
-    (void)state;
     const struct dig_scene           s = make(DIG_EFFECT_OBSTACLE, 0.02);
     const struct dig_obstacle *const o = &s.bed.obstacle[0];
     assert_false(o->movable);
@@ -132,9 +126,8 @@ static void an_obstacle_stands_in_the_way(void **state)
     assert_close(o->size_m[0], 0.02, 0.0);
 }
 
-static void a_clump_is_as_long_as_it_says(void **state)
+TEST(a_clump_is_as_long_as_it_says)
 {
-    (void)state;
     const struct dig_scene        s = make(DIG_EFFECT_GRAIN_SHAPE, 1.6);
     const struct dig_clump *const c = &s.bed.clump;
     assert_int_equal(c->spheres, 2);
@@ -143,9 +136,8 @@ static void a_clump_is_as_long_as_it_says(void **state)
     assert_true(s.time_step_s < 6.25e-5 && s.time_step_s > 0.75 * 6.25e-5);
 }
 
-static void what_no_bed_can_hold_is_refused_by_name(void **state)
+TEST(what_no_bed_can_hold_is_refused_by_name)
 {
-    (void)state;
     const struct dig_scene plain = rig();
     static const struct {
         enum dig_effect_id effect;
@@ -173,19 +165,4 @@ static void what_no_bed_can_hold_is_refused_by_name(void **state)
     }
     assert_null(dig_variant_unit(DIG_EFFECT_CYLINDER_FRICTION));
     assert_null(dig_variant_unit(DIG_EFFECT_RATE_DEPENDENCE));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_effect_of_a_bed_makes_another_scene),
-        cmocka_unit_test(what_sticks_to_itself_sticks_to_the_bucket),
-        cmocka_unit_test(sizes_are_mixed_as_in_the_reference),
-        cmocka_unit_test(a_slope_passes_below_every_tooth_and_touches_one),
-        cmocka_unit_test(a_layer_is_hard_or_loose_by_its_sign),
-        cmocka_unit_test(an_obstacle_stands_in_the_way),
-        cmocka_unit_test(a_clump_is_as_long_as_it_says),
-        cmocka_unit_test(what_no_bed_can_hold_is_refused_by_name),
-    };
-    return cmocka_run_group_tests_name("variant", tests, NULL, NULL);
 }

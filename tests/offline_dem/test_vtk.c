@@ -27,9 +27,8 @@ static char *picture(const char *const name)
     return scratch_read(scratch_path(path), &size);
 }
 
-static void grains_are_drawn_with_what_they_feel(void **state)
+TEST(grains_are_drawn_with_what_they_feel)
 {
-    (void)state;
     const double     overlap_m = 0.02 * GRAIN_m;
     const double     x[2][3]   = { { 0.0, 0.0, 0.0 }, { 2.0 * GRAIN_m - overlap_m, 0.0, 0.0 } };
     struct dig_world world     = dem_world(2, x, dem_material(0.5, 0.5));
@@ -61,9 +60,8 @@ static void grains_are_drawn_with_what_they_feel(void **state)
     dig_world_finish(&world);
 }
 
-static void rocks_are_drawn_where_they_are(void **state)
+TEST(rocks_are_drawn_where_they_are)
 {
-    (void)state;
     const double      x[1][3] = { { 0.0, 0.0, 0.0 } };
     struct dig_world  world   = dem_world(1, x, dem_material(0.5, 0.5));
     struct dig_tool   tool    = dig_tool_make(&bucket);
@@ -101,9 +99,8 @@ static void rocks_are_drawn_where_they_are(void **state)
     dig_world_finish(&world);
 }
 
-static void a_folder_that_is_not_there_is_told(void **state)
+TEST(a_folder_that_is_not_there_is_told)
 {
-    (void)state;
     const double     x[1][3] = { { 0.0, 0.0, 0.0 } };
     struct dig_world world   = dem_world(1, x, dem_material(0.5, 0.5));
     struct dig_tool  tool    = dig_tool_make(&bucket);
@@ -112,12 +109,4 @@ static void a_folder_that_is_not_there_is_told(void **state)
     dig_world_finish(&world);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grains_are_drawn_with_what_they_feel),
-        cmocka_unit_test(rocks_are_drawn_where_they_are),
-        cmocka_unit_test(a_folder_that_is_not_there_is_told),
-    };
-    return cmocka_run_group_tests_name("vtk", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

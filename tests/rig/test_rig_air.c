@@ -37,9 +37,8 @@ static struct dig_rig_track move(const struct dig_machine *const machine)
     return track;
 }
 
-static void every_machine_moves_each_joint_through_most_of_its_range_in_free_air(void **state)
+TEST(every_machine_moves_each_joint_through_most_of_its_range_in_free_air)
 {
-    (void)state;
     for (size_t m = 0; m < SHIPPED; m++) {
         const struct dig_machine machine = read_machine(shipped[m]);
         struct dig_rig_track     track   = move(&machine);
@@ -65,9 +64,8 @@ static void every_machine_moves_each_joint_through_most_of_its_range_in_free_air
 }
 
 // By differences of the rows: half a radian a second, and no jump of the acceleration.
-static void it_moves_slowly_and_smoothly(void **state)
+TEST(it_moves_slowly_and_smoothly)
 {
-    (void)state;
     const struct dig_machine machine = read_machine("zx200");
     struct dig_rig_track     track   = move(&machine);
     double                   fastest = 0.0, hardest = 0.0;
@@ -84,9 +82,8 @@ static void it_moves_slowly_and_smoothly(void **state)
     dig_rig_track_finish(&track);
 }
 
-static void a_bucket_on_a_force_sensor_is_refused(void **state)
+TEST(a_bucket_on_a_force_sensor_is_refused)
 {
-    (void)state;
     const struct dig_machine           machine = read_machine("rig_sensor");
     const struct dig_rig_track_options how     = dig_rig_track_options_default();
     struct dig_rig_track               track   = { .rows = 42 };
@@ -94,14 +91,4 @@ static void a_bucket_on_a_force_sensor_is_refused(void **state)
     assert_int_equal(dig_rig_track_build_air(&machine, &how, &track, &error), DIG_EINVAL);
     assert_non_null(strstr(error.text, "force sensor"));
     assert_int_equal(track.rows, 42);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_machine_moves_each_joint_through_most_of_its_range_in_free_air),
-        cmocka_unit_test(it_moves_slowly_and_smoothly),
-        cmocka_unit_test(a_bucket_on_a_force_sensor_is_refused),
-    };
-    return cmocka_run_group_tests_name("rig_air", tests, NULL, NULL);
 }

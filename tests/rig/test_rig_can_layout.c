@@ -27,9 +27,8 @@ static void assert_frame(const struct dig_rig_can_frame frame, const uint32_t id
 
 // (12.4 + 10) / 0.2 = 112 = 0x70; (1 + 10) / 0.2 = 55 = 0x37; 10 / 0.2 = 50 = 0x32;
 // 44.2 / 0.2 = 221 = 0xDD; 10.2 / 0.2 = 51 = 0x33; 50 / 0.2 = 250 = 0xFA.
-static void pressures_are_the_bytes_worked_by_hand(void **state)
+TEST(pressures_are_the_bytes_worked_by_hand)
 {
-    (void)state;
     const struct dig_sample sample  = sample_of(0.0, 0.0, 0.0);
     const uint8_t           bytes[] = { 0x70, 0x37, 0x32, 0xDD, 0x33, 0xFA, 0xFF, 0xFF };
     assert_frame(dig_rig_can_pressures(&sample), 0x18FF79E8, bytes);
@@ -37,35 +36,31 @@ static void pressures_are_the_bytes_worked_by_hand(void **state)
 
 // (0.5 + 10) / 0.0004 = 26250 = 0x668A; (-1.2 + 10) / 0.0004 = 22000 = 0x55F0;
 // (-0.0004 + 10) / 0.0004 = 24999 = 0x61A7. Low byte first.
-static void angles_are_the_bytes_worked_by_hand(void **state)
+TEST(angles_are_the_bytes_worked_by_hand)
 {
-    (void)state;
     const struct dig_sample sample  = sample_of(0.5, -1.2, -0.0004);
     const uint8_t           bytes[] = { 0x8A, 0x66, 0xF0, 0x55, 0xA7, 0x61, 0xFF, 0xFF };
     assert_frame(dig_rig_can_angles(&sample), 0x18FF7DE8, bytes);
 }
 
 // (0.05 + 4) / 0.0005 = 8100 = 0x1FA4 in fourteen bits, the two above it ones: 0xDFA4.
-static void tilt_is_the_bytes_worked_by_hand(void **state)
+TEST(tilt_is_the_bytes_worked_by_hand)
 {
-    (void)state;
     const struct dig_sample sample  = sample_of(0.0, 0.0, 0.0);
     const uint8_t           bytes[] = { 0xFF, 0xFF, 0xA4, 0xDF, 0xFF, 0xFF, 0xFF, 0xFF };
     assert_frame(dig_rig_can_tilt(&sample), 0x18FF7EE8, bytes);
 }
 
 // 45 + 100 = 145 = 0x91; the counter as it stands.
-static void state_is_the_bytes_worked_by_hand(void **state)
+TEST(state_is_the_bytes_worked_by_hand)
 {
-    (void)state;
     const struct dig_sample sample  = sample_of(0.0, 0.0, 0.0);
     const uint8_t           bytes[] = { 0xFF, 0xFF, 0xFF, 0x91, 0xFF, 0xFF, 0xFF, 0x2A };
     assert_frame(dig_rig_can_state(&sample, 42), 0x18FF84E8, bytes);
 }
 
-static void what_is_not_known_is_all_ones(void **state)
+TEST(what_is_not_known_is_all_ones)
 {
-    (void)state;
     const struct dig_sample none = { .time_ns = 0 };
     uint8_t                 ones[8];
     memset(ones, 0xFF, sizeof ones);
@@ -82,9 +77,8 @@ static void what_is_not_known_is_all_ones(void **state)
 }
 
 // A value beyond the field must not read as "not available", nor wrap round to something sensible.
-static void values_beyond_a_field_stand_at_its_end(void **state)
+TEST(values_beyond_a_field_stand_at_its_end)
 {
-    (void)state;
     struct dig_sample far              = sample_of(100.0, -100.0, 12.0);
     far.value[DIG_SIGNAL_BOOM_HEAD_Pa] = 60e6;
     far.value[DIG_SIGNAL_BOOM_ROD_Pa]  = -60e6;
@@ -95,9 +89,8 @@ static void values_beyond_a_field_stand_at_its_end(void **state)
 }
 
 // The example of the formats is what candump shows of this sample, oldest frame first.
-static void example_of_the_formats_is_what_is_sent(void **state)
+TEST(example_of_the_formats_is_what_is_sent)
 {
-    (void)state;
     const struct dig_sample        sample   = sample_of(0.5, -1.2, -0.0004);
     const struct dig_rig_can_frame frames[] = { dig_rig_can_angles(&sample),
                                                 dig_rig_can_pressures(&sample),
@@ -119,18 +112,4 @@ static void example_of_the_formats_is_what_is_sent(void **state)
         assert_string_equal(data, expected_data);
     }
     (void)fclose(file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pressures_are_the_bytes_worked_by_hand),
-        cmocka_unit_test(angles_are_the_bytes_worked_by_hand),
-        cmocka_unit_test(tilt_is_the_bytes_worked_by_hand),
-        cmocka_unit_test(state_is_the_bytes_worked_by_hand),
-        cmocka_unit_test(what_is_not_known_is_all_ones),
-        cmocka_unit_test(values_beyond_a_field_stand_at_its_end),
-        cmocka_unit_test(example_of_the_formats_is_what_is_sent),
-    };
-    return cmocka_run_group_tests_name("rig CAN layout", tests, NULL, NULL);
 }

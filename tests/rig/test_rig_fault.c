@@ -11,9 +11,8 @@ static struct dig_rig_fault parse(const char *const text)
     return fault;
 }
 
-static void every_kind_is_read_with_its_time(void **state)
+TEST(every_kind_is_read_with_its_time)
 {
-    (void)state;
     assert_int_equal(parse("not-available@1").kind, DIG_RIG_FAULT_NOT_AVAILABLE);
     assert_int_equal(parse("nan@1").kind, DIG_RIG_FAULT_NOT_AVAILABLE);
     assert_int_equal(parse("frozen@1").kind, DIG_RIG_FAULT_FROZEN);
@@ -31,9 +30,8 @@ static void every_kind_is_read_with_its_time(void **state)
     assert_true(isinf(parse("frozen@0").end_s));
 }
 
-static void nonsense_is_refused_and_writes_nothing(void **state)
+TEST(nonsense_is_refused_and_writes_nothing)
 {
-    (void)state;
     static const char *const bad[] = { "",           "frozen",      "frozen@",      "frozen@x",
                                        "frozen@-1",  "frozen@1:",   "frozen@1:0",   "frozen@1:-2",
                                        "frozen@1x",  "frozen@1:2x", "froze@1",      "frozen2@1",
@@ -49,9 +47,8 @@ static void nonsense_is_refused_and_writes_nothing(void **state)
     }
 }
 
-static void fault_is_on_from_its_begin_to_just_before_its_end(void **state)
+TEST(fault_is_on_from_its_begin_to_just_before_its_end)
 {
-    (void)state;
     const struct dig_rig_fault faults[] = { parse("frozen@1:2"), parse("missing@2") };
     assert_false(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_FROZEN, 0.999));
     assert_true(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_FROZEN, 1.0));
@@ -62,9 +59,8 @@ static void fault_is_on_from_its_begin_to_just_before_its_end(void **state)
     assert_false(dig_rig_fault_is_on(0, faults, DIG_RIG_FAULT_MISSING, 1e6));
 }
 
-static void samples_are_spoiled_only_while_the_fault_lasts(void **state)
+TEST(samples_are_spoiled_only_while_the_fault_lasts)
 {
-    (void)state;
     const struct dig_rig_fault faults[] = { parse("nan@1:1"), parse("out-of-range@3:1") };
     struct dig_sample          good     = { .value = { 0.5, -1.0, -0.5, 5e6 } };
     for (int s = 0; s < DIG_SIGNALS; s++) {
@@ -84,15 +80,4 @@ static void samples_are_spoiled_only_while_the_fault_lasts(void **state)
     assert_true(dig_sample_is_complete(&sample));
     assert_close(sample.value[DIG_SIGNAL_BOOM_rad], 12.0, 0.0);
     assert_close(sample.value[DIG_SIGNAL_BUCKET_ROD_Pa], 60e6, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_is_read_with_its_time),
-        cmocka_unit_test(nonsense_is_refused_and_writes_nothing),
-        cmocka_unit_test(fault_is_on_from_its_begin_to_just_before_its_end),
-        cmocka_unit_test(samples_are_spoiled_only_while_the_fault_lasts),
-    };
-    return cmocka_run_group_tests_name("rig faults", tests, NULL, NULL);
 }

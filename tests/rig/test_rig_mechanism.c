@@ -39,9 +39,8 @@ static struct dig_machine right_angle(void)
     };
 }
 
-static void golden_pose_has_the_angles_worked_by_hand(void **state)
+TEST(golden_pose_has_the_angles_worked_by_hand)
 {
-    (void)state;
     const struct dig_machine machine = right_angle();
     // theta = -20 deg in the rig is phi = -90 + 20 = -70 deg here.
     const struct dig_rig_pose pose = { .X_m = 5.0, .phi_rad = -70.0 * DIG_RAD_PER_DEG };
@@ -57,9 +56,8 @@ static void golden_pose_has_the_angles_worked_by_hand(void **state)
 
 // The arm cylinder of the same pose: the eye stands at (4, 0.5) of the boom frame, 3 along and half
 // a metre below the base; half a metre of tail moves it backwards as the arm opens.
-static void golden_cylinder_has_the_length_and_lever_worked_by_hand(void **state)
+TEST(golden_cylinder_has_the_length_and_lever_worked_by_hand)
 {
-    (void)state;
     const struct dig_machine machine = right_angle();
     double                   length_m;
     double                   lever_m;
@@ -75,9 +73,8 @@ static double complex turn(const double rad)
     return cexp(J * rad);
 }
 
-static void inverse_undoes_an_independent_forward_chain(void **state)
+TEST(inverse_undoes_an_independent_forward_chain)
 {
-    (void)state;
     const struct dig_machine machine = read_machine(shipped[0]);
     for (int b = -4; b <= 6; b += 2) {
         for (int a = -14; a <= -4; a += 2) {
@@ -108,9 +105,8 @@ static void inverse_undoes_an_independent_forward_chain(void **state)
     }
 }
 
-static void every_shipped_machine_closes_over_its_whole_range_within_its_strokes(void **state)
+TEST(every_shipped_machine_closes_over_its_whole_range_within_its_strokes)
 {
-    (void)state;
     for (size_t m = 0; m < SHIPPED; m++) {
         const struct dig_machine machine = read_machine(shipped[m]);
         for (int j = 0; j < DIG_JOINTS; j++) {
@@ -138,9 +134,8 @@ static void every_shipped_machine_closes_over_its_whole_range_within_its_strokes
 }
 
 // Force at the tooth when only the bucket cylinder works, at its best angle: what a class has.
-static void breakout_forces_are_those_of_their_class(void **state)
+TEST(breakout_forces_are_those_of_their_class)
 {
-    (void)state;
     const double least_kN[SHIPPED] = { 130.0, 130.0, 90.0, 18.0, 13.0, 85.0, 190.0 };
     const double most_kN[SHIPPED]  = { 160.0, 260.0, 115.0, 26.0, 19.0, 115.0, 250.0 };
     for (size_t m = 0; m < SHIPPED; m++) {
@@ -160,9 +155,8 @@ static void breakout_forces_are_those_of_their_class(void **state)
     }
 }
 
-static void four_bar_keeps_its_bars_and_stays_on_the_cylinder_s_side(void **state)
+TEST(four_bar_keeps_its_bars_and_stays_on_the_cylinder_s_side)
 {
-    (void)state;
     for (size_t m = 0; m < SHIPPED; m++) {
         const struct dig_machine machine = read_machine(shipped[m]);
         const struct dig_link   *link    = &machine.link[DIG_JOINT_BUCKET];
@@ -198,9 +192,8 @@ static void four_bar_keeps_its_bars_and_stays_on_the_cylinder_s_side(void **stat
     }
 }
 
-static void poses_out_of_reach_are_refused_and_write_nothing(void **state)
+TEST(poses_out_of_reach_are_refused_and_write_nothing)
 {
-    (void)state;
     const struct dig_machine  machine = right_angle();
     const struct dig_rig_pose bad[]   = {
           { 7.1, 0.0, 0.0 }, // farther than boom and arm
@@ -222,18 +215,4 @@ static void poses_out_of_reach_are_refused_and_write_nothing(void **state)
     assert_int_equal(dig_rig_lever_m(&open, DIG_JOINT_BUCKET, 0.0, &lever_m), DIG_EUNREACHABLE);
     assert_close(length_m, 42.0, 0.0);
     assert_close(lever_m, 42.0, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(golden_pose_has_the_angles_worked_by_hand),
-        cmocka_unit_test(golden_cylinder_has_the_length_and_lever_worked_by_hand),
-        cmocka_unit_test(inverse_undoes_an_independent_forward_chain),
-        cmocka_unit_test(every_shipped_machine_closes_over_its_whole_range_within_its_strokes),
-        cmocka_unit_test(breakout_forces_are_those_of_their_class),
-        cmocka_unit_test(four_bar_keeps_its_bars_and_stays_on_the_cylinder_s_side),
-        cmocka_unit_test(poses_out_of_reach_are_refused_and_write_nothing),
-    };
-    return cmocka_run_group_tests_name("rig mechanism", tests, NULL, NULL);
 }

@@ -18,9 +18,8 @@ static void encode_example(uint16_t registers[const DIG_RIG_REGISTERS])
     dig_rig_modbus_encode(&sample, 65535, registers);
 }
 
-static void registers_are_those_worked_by_hand(void **state)
+TEST(registers_are_those_worked_by_hand)
 {
-    (void)state;
     uint16_t registers[DIG_RIG_REGISTERS];
     encode_example(registers);
     // -12500 is 0xCF2C, -1 is 0xFFFF, -500 is 0xFE0C; 452.5 tenths round away from zero. -4150 is
@@ -31,9 +30,8 @@ static void registers_are_those_worked_by_hand(void **state)
     assert_memory_equal(registers, expected, sizeof expected);
 }
 
-static void example_of_the_formats_is_what_is_read(void **state)
+TEST(example_of_the_formats_is_what_is_read)
 {
-    (void)state;
     uint16_t registers[DIG_RIG_REGISTERS];
     encode_example(registers);
     FILE *const file = fopen("tests/data/formats/rig_registers.csv", "r");
@@ -50,9 +48,8 @@ static void example_of_the_formats_is_what_is_read(void **state)
     (void)fclose(file);
 }
 
-static void what_is_not_known_has_its_own_number(void **state)
+TEST(what_is_not_known_has_its_own_number)
 {
-    (void)state;
     const struct dig_sample none = { .time_ns = 0 };
     uint16_t                registers[DIG_RIG_REGISTERS];
     dig_rig_modbus_encode(&none, 7, registers);
@@ -62,9 +59,8 @@ static void what_is_not_known_has_its_own_number(void **state)
     assert_memory_equal(registers, expected, sizeof expected);
 }
 
-static void values_beyond_a_register_stand_at_its_end(void **state)
+TEST(values_beyond_a_register_stand_at_its_end)
 {
-    (void)state;
     struct dig_sample far = {
         .value = { 12.0, -12.0, NAN, 60e6, 90e6, -1e6, 1e6, 1e6, INFINITY, 0.0, 1e9, 1.0, -1.0,
                    400.0, -400.0, 20.0 },
@@ -78,15 +74,4 @@ static void values_beyond_a_register_stand_at_its_end(void **state)
                                                    65534, 0,      1000,   1000,   0xFFFF, 32767,
                                                    32767, 0x8001, 32767,  0x8001, 32767 };
     assert_memory_equal(registers, expected, sizeof expected);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(registers_are_those_worked_by_hand),
-        cmocka_unit_test(example_of_the_formats_is_what_is_read),
-        cmocka_unit_test(what_is_not_known_has_its_own_number),
-        cmocka_unit_test(values_beyond_a_register_stand_at_its_end),
-    };
-    return cmocka_run_group_tests_name("rig Modbus map", tests, NULL, NULL);
 }

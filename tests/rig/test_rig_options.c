@@ -30,9 +30,8 @@ static struct dig_rig_options good(const char *const line)
     return options;
 }
 
-static void examples_of_the_contract_are_understood(void **state)
+TEST(examples_of_the_contract_are_understood)
 {
-    (void)state;
     const struct dig_rig_options serve =
         good("digrig serve r.csv --machine m.yaml --can vcan0 --modbus-tcp 127.0.0.1:1502 "
              "--modbus-rtu /dev/ttyS0:9600 --speed 2.5 --loop --start-delay 3 --json "
@@ -74,9 +73,8 @@ static void examples_of_the_contract_are_understood(void **state)
     assert_false(air.noise || air.quantise);
 }
 
-static void defaults_are_a_noisy_quantised_machine_in_real_time(void **state)
+TEST(defaults_are_a_noisy_quantised_machine_in_real_time)
 {
-    (void)state;
     const struct dig_rig_options o = good("digrig record a.csv --machine m.yaml -o out.csv");
     assert_true(o.noise && o.quantise && o.track.air && o.track.blend);
     assert_false(o.track.placed || o.track.quasi_static || o.loop);
@@ -90,9 +88,8 @@ static void defaults_are_a_noisy_quantised_machine_in_real_time(void **state)
     assert_int_equal(good("digrig --version").command, DIG_RIG_COMMAND_VERSION);
 }
 
-static void bad_lines_are_refused_with_a_word_and_write_nothing(void **state)
+TEST(bad_lines_are_refused_with_a_word_and_write_nothing)
 {
-    (void)state;
     static const struct {
         const char *line, *word;
     } bad[] = {
@@ -133,21 +130,9 @@ static void bad_lines_are_refused_with_a_word_and_write_nothing(void **state)
     }
 }
 
-static void help_is_asked_of_one_command_or_of_all(void **state)
+TEST(help_is_asked_of_one_command_or_of_all)
 {
-    (void)state;
     assert_string_equal(good("digrig record --help").help_of->name, "record");
     assert_string_equal(good("digrig serve -h").help_of->name, "serve");
     assert_ptr_equal(good("digrig --help").help_of, &dig_rig_program()->self);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(examples_of_the_contract_are_understood),
-        cmocka_unit_test(defaults_are_a_noisy_quantised_machine_in_real_time),
-        cmocka_unit_test(bad_lines_are_refused_with_a_word_and_write_nothing),
-        cmocka_unit_test(help_is_asked_of_one_command_or_of_all),
-    };
-    return cmocka_run_group_tests_name("rig options", tests, NULL, NULL);
 }

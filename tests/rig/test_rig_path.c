@@ -39,9 +39,8 @@ static struct dig_rig_path build(const struct dig_rig_path_options options)
     return path;
 }
 
-static void dig_is_scaled_by_froude_and_mirrored(void **state)
+TEST(dig_is_scaled_by_froude_and_mirrored)
 {
-    (void)state;
     const double        lambda = 4.0;
     struct dig_rig_path path =
         build((struct dig_rig_path_options){ .lambda = lambda, .tooth_m = 0.36 });
@@ -66,9 +65,8 @@ static size_t first_loaded(const struct dig_rig_path *const path)
     return i;
 }
 
-static void air_lies_before_contact_and_after_the_dump(void **state)
+TEST(air_lies_before_contact_and_after_the_dump)
 {
-    (void)state;
     struct dig_rig_path path  = build((struct dig_rig_path_options){
          .lambda = 10.0, .tooth_m = 0.9, .air = true, .blend = true });
     const size_t        first = first_loaded(&path);
@@ -100,9 +98,8 @@ static void air_lies_before_contact_and_after_the_dump(void **state)
     dig_rig_path_finish(&path);
 }
 
-static void load_fades_without_a_jump_while_the_bucket_dumps(void **state)
+TEST(load_fades_without_a_jump_while_the_bucket_dumps)
 {
-    (void)state;
     struct dig_rig_path path  = build((struct dig_rig_path_options){
          .lambda = 10.0, .tooth_m = 0.9, .air = true, .blend = true });
     const size_t        first = first_loaded(&path);
@@ -121,9 +118,8 @@ static double speed_step(const struct dig_rig_path *const path, const size_t i)
     return hypot(X, Z) / DIG_RIG_STEP_s;
 }
 
-static void blend_removes_velocity_jumps_and_stays_within_its_bound(void **state)
+TEST(blend_removes_velocity_jumps_and_stays_within_its_bound)
 {
-    (void)state;
     const struct dig_rig_path_options sharp = { .lambda = 10.0, .tooth_m = 0.9 };
     struct dig_rig_path_options       round = sharp;
     round.blend                             = true;
@@ -157,9 +153,8 @@ static void blend_removes_velocity_jumps_and_stays_within_its_bound(void **state
     dig_rig_path_finish(&b);
 }
 
-static void two_digs_lie_in_one_bed_with_air_between(void **state)
+TEST(two_digs_lie_in_one_bed_with_air_between)
 {
-    (void)state;
     const struct dig_recording  one   = cornered();
     struct dig_force_row *const moved = malloc(sizeof rows);
     assert_non_null(moved);
@@ -193,9 +188,8 @@ static void two_digs_lie_in_one_bed_with_air_between(void **state)
     free(moved);
 }
 
-static void bad_requests_are_refused_and_write_nothing(void **state)
+TEST(bad_requests_are_refused_and_write_nothing)
 {
-    (void)state;
     const struct dig_recording        good[2] = { cornered(), cornered() };
     const struct dig_recording        shorty  = { .rows = 1, .row = rows };
     const struct dig_rig_path_options air     = { .lambda = 10.0, .tooth_m = 0.9, .air = true };
@@ -216,17 +210,4 @@ static void bad_requests_are_refused_and_write_nothing(void **state)
     assert_int_equal(dig_rig_path_build(&no_air, 2, good, &path, &error), DIG_EINVAL);
     assert_int_equal(path.frames, 42);
     assert_true(error.text[0] != '\0');
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(dig_is_scaled_by_froude_and_mirrored),
-        cmocka_unit_test(air_lies_before_contact_and_after_the_dump),
-        cmocka_unit_test(load_fades_without_a_jump_while_the_bucket_dumps),
-        cmocka_unit_test(blend_removes_velocity_jumps_and_stays_within_its_bound),
-        cmocka_unit_test(two_digs_lie_in_one_bed_with_air_between),
-        cmocka_unit_test(bad_requests_are_refused_and_write_nothing),
-    };
-    return cmocka_run_group_tests_name("rig path", tests, NULL, NULL);
 }

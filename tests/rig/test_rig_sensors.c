@@ -20,9 +20,8 @@ static const struct dig_rig_row row = {
     .pressures = { .head_Pa = { 8e6, 1e6, 1.1e6 }, .rod_Pa = { 1e6, 4.2e6, 2.2e6 } },
 };
 
-static void without_noise_the_sensors_read_the_truth(void **state)
+TEST(without_noise_the_sensors_read_the_truth)
 {
-    (void)state;
     const struct dig_sample sample = dig_rig_sense(&machine, &row, 5000000, NULL);
     assert_int_equal(sample.time_ns, 5000000);
     assert_true(dig_sample_is_complete(&sample));
@@ -34,9 +33,8 @@ static void without_noise_the_sensors_read_the_truth(void **state)
 }
 
 // Mean and deviation of 20000 readings; the bands are five standard errors.
-static void noise_has_the_machine_s_sigmas_and_no_bias(void **state)
+TEST(noise_has_the_machine_s_sigmas_and_no_bias)
 {
-    (void)state;
     enum { N = 20000 };
     struct dig_rig_noise    noise           = dig_rig_noise_init(7);
     const struct dig_sample truth           = dig_rig_sense(&machine, &row, 0, NULL);
@@ -61,9 +59,8 @@ static void noise_has_the_machine_s_sigmas_and_no_bias(void **state)
     assert_close(product / N, 0.0, 5.0 / sqrt((double)N));
 }
 
-static void one_seed_is_one_stream(void **state)
+TEST(one_seed_is_one_stream)
 {
-    (void)state;
     struct dig_rig_noise a    = dig_rig_noise_init(3);
     struct dig_rig_noise b    = dig_rig_noise_init(3);
     struct dig_rig_noise c    = dig_rig_noise_init(4);
@@ -76,9 +73,8 @@ static void one_seed_is_one_stream(void **state)
     assert_int_equal(same, 0);
 }
 
-static void quantised_values_are_whole_steps_half_a_step_off_at_most(void **state)
+TEST(quantised_values_are_whole_steps_half_a_step_off_at_most)
 {
-    (void)state;
     struct dig_rig_noise noise = dig_rig_noise_init(1);
     for (int i = 0; i < 1000; i++) {
         const struct dig_sample exact  = dig_rig_sense(&machine, &row, 0, &noise);
@@ -93,9 +89,8 @@ static void quantised_values_are_whole_steps_half_a_step_off_at_most(void **stat
     }
 }
 
-static void machine_without_steps_is_not_quantised(void **state)
+TEST(machine_without_steps_is_not_quantised)
 {
-    (void)state;
     struct dig_machine smooth     = machine;
     smooth.pressure_step_Pa       = 0.0;
     smooth.angle_step_rad         = 0.0;
@@ -103,16 +98,4 @@ static void machine_without_steps_is_not_quantised(void **state)
     struct dig_sample       same  = exact;
     dig_rig_quantise(&smooth, &same);
     assert_memory_equal(&same, &exact, sizeof same);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_noise_the_sensors_read_the_truth),
-        cmocka_unit_test(noise_has_the_machine_s_sigmas_and_no_bias),
-        cmocka_unit_test(one_seed_is_one_stream),
-        cmocka_unit_test(quantised_values_are_whole_steps_half_a_step_off_at_most),
-        cmocka_unit_test(machine_without_steps_is_not_quantised),
-    };
-    return cmocka_run_group_tests_name("rig sensors", tests, NULL, NULL);
 }

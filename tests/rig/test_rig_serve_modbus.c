@@ -34,9 +34,8 @@ static modbus_t *join(const struct rig *const rig)
     return client;
 }
 
-static void input_and_holding_registers_read_the_same_board(void **state)
+TEST(input_and_holding_registers_read_the_same_board)
 {
-    (void)state;
     struct rig rig;
     start_tcp(&rig);
     modbus_t *const client                   = join(&rig);
@@ -71,9 +70,8 @@ static void input_and_holding_registers_read_the_same_board(void **state)
     assert_int_equal(rig.requests.refused[4], 2);
 }
 
-static void every_write_is_refused_with_exception_1_and_counted(void **state)
+TEST(every_write_is_refused_with_exception_1_and_counted)
 {
-    (void)state;
     struct rig rig;
     start_tcp(&rig);
     modbus_t *const client   = join(&rig);
@@ -107,9 +105,8 @@ static void every_write_is_refused_with_exception_1_and_counted(void **state)
     }
 }
 
-static void reads_outside_the_map_are_refused(void **state)
+TEST(reads_outside_the_map_are_refused)
 {
-    (void)state;
     struct rig rig;
     start_tcp(&rig);
     modbus_t *const client   = join(&rig);
@@ -125,9 +122,8 @@ static void reads_outside_the_map_are_refused(void **state)
     assert_int_equal(rig.requests.served[4], 0);
 }
 
-static void several_clients_come_and_go_and_one_that_drops_stops_nobody(void **state)
+TEST(several_clients_come_and_go_and_one_that_drops_stops_nobody)
 {
-    (void)state;
     struct rig rig;
     start_tcp(&rig);
     uint16_t found[DIG_RIG_REGISTERS];
@@ -151,9 +147,8 @@ static void several_clients_come_and_go_and_one_that_drops_stops_nobody(void **s
     assert_int_equal(rig.requests.clients, 25);
 }
 
-static void silent_board_answers_nothing_and_speaks_again_later(void **state)
+TEST(silent_board_answers_nothing_and_speaks_again_later)
 {
-    (void)state;
     struct rig rig;
     start_tcp(&rig);
     modbus_t *const client = join(&rig);
@@ -170,9 +165,8 @@ static void silent_board_answers_nothing_and_speaks_again_later(void **state)
     assert_int_equal(rig.requests.unanswered, 1);
 }
 
-static void damaged_answers_are_refused_by_the_client_and_counted(void **state)
+TEST(damaged_answers_are_refused_by_the_client_and_counted)
 {
-    (void)state;
     struct rig rig;
     uint16_t   read[12];
     start_tcp(&rig);
@@ -192,9 +186,8 @@ static void damaged_answers_are_refused_by_the_client_and_counted(void **state)
     assert_int_equal(rig.requests.served[4], 1);
 }
 
-static void port_that_is_taken_and_addresses_that_are_none_are_refused(void **state)
+TEST(port_that_is_taken_and_addresses_that_are_none_are_refused)
 {
-    (void)state;
     struct rig rig;
     start_tcp(&rig);
     char                   where[100];
@@ -232,9 +225,8 @@ static void *read_board(void *const board)
 }
 
 // A client that came before the first values read zeros: the front jumped there, and back.
-static void request_before_the_first_values_is_answered_with_them(void **state)
+TEST(request_before_the_first_values_is_answered_with_them)
 {
-    (void)state;
     struct dig_rig_board board;
     assert_true(dig_rig_board_init(&board));
     pthread_t reader;
@@ -246,19 +238,4 @@ static void request_before_the_first_values_is_answered_with_them(void **state)
     assert_int_equal(pthread_join(reader, &found), 0);
     assert_memory_equal(found, registers, sizeof registers);
     dig_rig_board_finish(&board);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(request_before_the_first_values_is_answered_with_them),
-        cmocka_unit_test(input_and_holding_registers_read_the_same_board),
-        cmocka_unit_test(every_write_is_refused_with_exception_1_and_counted),
-        cmocka_unit_test(reads_outside_the_map_are_refused),
-        cmocka_unit_test(several_clients_come_and_go_and_one_that_drops_stops_nobody),
-        cmocka_unit_test(silent_board_answers_nothing_and_speaks_again_later),
-        cmocka_unit_test(damaged_answers_are_refused_by_the_client_and_counted),
-        cmocka_unit_test(port_that_is_taken_and_addresses_that_are_none_are_refused),
-    };
-    return cmocka_run_group_tests_name("rig Modbus servers", tests, NULL, NULL);
 }

@@ -90,9 +90,8 @@ static void unplug(struct cable *const cable)
     (void)pthread_mutex_destroy(&cable->lock);
 }
 
-static void slave_1_on_a_serial_line_serves_reads_and_refuses_writes(void **state)
+TEST(slave_1_on_a_serial_line_serves_reads_and_refuses_writes)
 {
-    (void)state;
     struct cable cable;
     plug_in(&cable);
     struct rig       rig;
@@ -140,12 +139,4 @@ static void slave_1_on_a_serial_line_serves_reads_and_refuses_writes(void **stat
     assert_int_equal(rig.requests.served[4], 5);
     assert_int_equal(rig.requests.served[3], 2);
     assert_int_equal(rig.requests.refused[6], 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slave_1_on_a_serial_line_serves_reads_and_refuses_writes),
-    };
-    return cmocka_run_group_tests_name("rig Modbus over a serial line", tests, NULL, NULL);
 }

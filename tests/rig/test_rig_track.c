@@ -35,9 +35,8 @@ static struct dig_recording read_recording(const char *const path)
     return recording;
 }
 
-static void simple_then_actual_fit_the_trench_machine_below_relief(void **state)
+TEST(simple_then_actual_fit_the_trench_machine_below_relief)
 {
-    (void)state;
     const struct dig_machine           machine = read_machine("zx200_trench");
     const struct dig_rig_track_options options = dig_rig_track_options_default();
     struct dig_recording recording[2]          = { read_recording(SIMPLE), read_recording(ACTUAL) };
@@ -64,9 +63,8 @@ static void simple_then_actual_fit_the_trench_machine_below_relief(void **state)
     dig_recording_finish(&recording[1]);
 }
 
-static void stiffest_reference_dig_fits_the_trench_machine(void **state)
+TEST(stiffest_reference_dig_fits_the_trench_machine)
 {
-    (void)state;
     const struct dig_machine           machine   = read_machine("zx200_trench");
     const struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording               recording = read_recording(STIFF);
@@ -79,9 +77,8 @@ static void stiffest_reference_dig_fits_the_trench_machine(void **state)
 }
 
 // The rows carry the recording: time, force and moment scaled, whatever the air around it.
-static void soil_of_the_track_is_the_recording_s_at_scale(void **state)
+TEST(soil_of_the_track_is_the_recording_s_at_scale)
 {
-    (void)state;
     const struct dig_machine     machine   = read_machine("zx200_trench");
     struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording         recording = read_recording(SIMPLE);
@@ -108,9 +105,8 @@ static void soil_of_the_track_is_the_recording_s_at_scale(void **state)
 
 // What the cylinders and the soil put in, the links have as height and speed: the whole run in one
 // sum, with none of the differences the pushes were made of.
-static void cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links(void **state)
+TEST(cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links)
 {
-    (void)state;
     const struct dig_machine     machine   = read_machine("zx200_trench");
     struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording         recording = read_recording(SIMPLE);
@@ -176,9 +172,8 @@ static void cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links(void *
     dig_recording_finish(&recording);
 }
 
-static void inertia_is_a_small_part_of_a_slow_dig(void **state)
+TEST(inertia_is_a_small_part_of_a_slow_dig)
 {
-    (void)state;
     const struct dig_machine     machine   = read_machine("zx200_trench");
     struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording         recording = read_recording(ACTUAL);
@@ -219,18 +214,16 @@ static void refuse(const struct dig_machine *const machine, const char *const pa
     dig_recording_finish(&recording);
 }
 
-static void dig_beyond_a_relief_pressure_is_refused_with_cylinder_peak_and_limit(void **state)
+TEST(dig_beyond_a_relief_pressure_is_refused_with_cylinder_peak_and_limit)
 {
-    (void)state;
     struct dig_machine                 machine   = read_machine("zx200_trench");
     const struct dig_rig_track_options options   = dig_rig_track_options_default();
     machine.cylinder[DIG_JOINT_BUCKET].relief_Pa = 3e6;
     refuse(&machine, ACTUAL, &options, DIG_EINVAL, "bucket cylinder:", "relief 3.0 MPa");
 }
 
-static void dig_that_lifts_or_tips_the_machine_is_refused(void **state)
+TEST(dig_that_lifts_or_tips_the_machine_is_refused)
 {
-    (void)state;
     struct dig_machine                 machine = read_machine("zx200_trench");
     const struct dig_rig_track_options options = dig_rig_track_options_default();
     machine.weight_N                           = 1e3;
@@ -245,17 +238,15 @@ static void dig_that_lifts_or_tips_the_machine_is_refused(void **state)
     refuse(&machine, ACTUAL, &options, DIG_EINVAL, "machine lifted", "all weighs 1.3 kN");
 }
 
-static void standard_bucket_is_refused_as_more_than_the_machine_has(void **state)
+TEST(standard_bucket_is_refused_as_more_than_the_machine_has)
 {
-    (void)state;
     const struct dig_machine           machine = read_machine("zx200");
     const struct dig_rig_track_options options = dig_rig_track_options_default();
     refuse(&machine, ACTUAL, &options, DIG_EINVAL, "zx200 cannot do this dig", "");
 }
 
-static void dig_out_of_reach_is_refused(void **state)
+TEST(dig_out_of_reach_is_refused)
 {
-    (void)state;
     struct dig_machine           machine = read_machine("zx200_trench");
     struct dig_rig_track_options options = dig_rig_track_options_default();
     options.placed                       = true;
@@ -274,9 +265,8 @@ static void dig_out_of_reach_is_refused(void **state)
     refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "arm cylinder:", "limit");
 }
 
-static void options_out_of_their_domain_are_refused(void **state)
+TEST(options_out_of_their_domain_are_refused)
 {
-    (void)state;
     const struct dig_machine     machine = read_machine("zx200_trench");
     struct dig_rig_track_options options = dig_rig_track_options_default();
     options.rate_Hz                      = 300.0;
@@ -291,9 +281,8 @@ static void options_out_of_their_domain_are_refused(void **state)
 }
 
 // Which margin is left of a pose is counted by hand for a front of one heavy bucket.
-static void ground_limits_are_those_of_a_beam_on_two_edges(void **state)
+TEST(ground_limits_are_those_of_a_beam_on_two_edges)
 {
-    (void)state;
     struct dig_machine machine = read_machine("zx200_trench");
     for (int j = 0; j < DIG_JOINTS; j++) {
         machine.link[j].mass_kg = 1e-3;
@@ -313,22 +302,4 @@ static void ground_limits_are_those_of_a_beam_on_two_edges(void **state)
     assert_int_equal(found.nearest.limit, DIG_RIG_LIMIT_TIP);
     assert_string_equal(found.nearest.end, "rear");
     assert_close(found.nearest.share, 20.0 / 200.0, 1e-4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(simple_then_actual_fit_the_trench_machine_below_relief),
-        cmocka_unit_test(stiffest_reference_dig_fits_the_trench_machine),
-        cmocka_unit_test(soil_of_the_track_is_the_recording_s_at_scale),
-        cmocka_unit_test(cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links),
-        cmocka_unit_test(inertia_is_a_small_part_of_a_slow_dig),
-        cmocka_unit_test(dig_beyond_a_relief_pressure_is_refused_with_cylinder_peak_and_limit),
-        cmocka_unit_test(dig_that_lifts_or_tips_the_machine_is_refused),
-        cmocka_unit_test(standard_bucket_is_refused_as_more_than_the_machine_has),
-        cmocka_unit_test(dig_out_of_reach_is_refused),
-        cmocka_unit_test(options_out_of_their_domain_are_refused),
-        cmocka_unit_test(ground_limits_are_those_of_a_beam_on_two_edges),
-    };
-    return cmocka_run_group_tests_name("rig track", tests, NULL, NULL);
 }

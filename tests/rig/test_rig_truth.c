@@ -24,9 +24,8 @@ static struct dig_rig_row rows[] = {
 static const struct dig_rig_track track = { .rows = 2, .step_s = 0.005, .row = rows };
 
 // Force in the rig's axes: a push towards machine +X is one towards the rig's -x.
-static void truth_is_written_as_the_example_of_the_formats_stands(void **state)
+TEST(truth_is_written_as_the_example_of_the_formats_stands)
 {
-    (void)state;
     const char *const path = scratch_path("truth.csv");
     assert_int_equal(dig_rig_truth_write(path, &track, NULL), DIG_OK);
     size_t      size[2];
@@ -37,9 +36,8 @@ static void truth_is_written_as_the_example_of_the_formats_stands(void **state)
     free(example);
 }
 
-static void recording_reads_back_as_the_track_it_came_from(void **state)
+TEST(recording_reads_back_as_the_track_it_came_from)
 {
-    (void)state;
     const struct dig_machine machine = { .pressure_step_Pa = 2e5, .angle_step_rad = 4e-4 };
     struct dig_rig_options   options = { .out = scratch_path("machine.csv") };
     assert_int_equal(dig_rig_record(&machine, &options, &track, NULL), DIG_OK);
@@ -62,9 +60,8 @@ static void recording_reads_back_as_the_track_it_came_from(void **state)
     dig_machine_recording_finish(&found);
 }
 
-static void file_that_cannot_be_written_is_reported_and_left_out(void **state)
+TEST(file_that_cannot_be_written_is_reported_and_left_out)
 {
-    (void)state;
     const struct dig_machine     machine = { .pressure_step_Pa = 0.0 };
     const struct dig_rig_options options = { .out   = scratch_path("none.csv"),
                                              .truth = "/nowhere/at/all.csv" };
@@ -74,12 +71,4 @@ static void file_that_cannot_be_written_is_reported_and_left_out(void **state)
     assert_false(scratch_exists("none.csv"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(truth_is_written_as_the_example_of_the_formats_stands),
-        cmocka_unit_test(recording_reads_back_as_the_track_it_came_from),
-        cmocka_unit_test(file_that_cannot_be_written_is_reported_and_left_out),
-    };
-    return cmocka_run_group_tests_name("rig truth", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -42,9 +42,8 @@ static struct dig_rig_wire play(struct sink *const sink, const char *const text)
 
 static struct sink sink;
 
-static void a_share_is_dropped_and_the_rest_goes_through(void **state)
+TEST(a_share_is_dropped_and_the_rest_goes_through)
 {
-    (void)state;
     const struct dig_rig_wire wire = play(&sink, "drop=0.1@10:50");
     assert_int_equal(sink.count + wire.dropped, FRAMES);
     assert_in_range(wire.dropped, 430, 570);
@@ -55,17 +54,15 @@ static void a_share_is_dropped_and_the_rest_goes_through(void **state)
     }
 }
 
-static void a_share_is_doubled(void **state)
+TEST(a_share_is_doubled)
 {
-    (void)state;
     const struct dig_rig_wire wire = play(&sink, "duplicate=0.2@0");
     assert_int_equal(sink.count, FRAMES + wire.doubled);
     assert_in_range(wire.doubled, 1800, 2200);
 }
 
-static void a_share_is_overtaken_by_the_next(void **state)
+TEST(a_share_is_overtaken_by_the_next)
 {
-    (void)state;
     const struct dig_rig_wire wire      = play(&sink, "reorder=0.2@0");
     size_t                    backwards = 0;
     for (size_t i = 1; i < sink.count; i++) {
@@ -76,9 +73,8 @@ static void a_share_is_overtaken_by_the_next(void **state)
     assert_in_range(wire.overtaken, 1000, 2200);
 }
 
-static void a_damaged_frame_has_one_bit_flipped(void **state)
+TEST(a_damaged_frame_has_one_bit_flipped)
 {
-    (void)state;
     const struct dig_rig_wire wire    = play(&sink, "corrupt=0.1@0");
     size_t                    damaged = 0;
     assert_int_equal(sink.count, FRAMES);
@@ -95,9 +91,8 @@ static void a_damaged_frame_has_one_bit_flipped(void **state)
     assert_in_range(damaged, 900, 1100);
 }
 
-static void frames_held_back_come_in_bursts_and_all_of_them(void **state)
+TEST(frames_held_back_come_in_bursts_and_all_of_them)
 {
-    (void)state;
     (void)play(&sink, "delay=0.1@10:50");
     assert_int_equal(sink.count, FRAMES);
     size_t bursts = 0;
@@ -106,16 +101,4 @@ static void frames_held_back_come_in_bursts_and_all_of_them(void **state)
         bursts += sink.at_s[i] > sink.at_s[i - 1] + 0.05 ? 1 : 0;
     }
     assert_in_range(bursts, 430, 510); // every 0.1 s and a frame
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_share_is_dropped_and_the_rest_goes_through),
-        cmocka_unit_test(a_share_is_doubled),
-        cmocka_unit_test(a_share_is_overtaken_by_the_next),
-        cmocka_unit_test(a_damaged_frame_has_one_bit_flipped),
-        cmocka_unit_test(frames_held_back_come_in_bursts_and_all_of_them),
-    };
-    return cmocka_run_group_tests_name("rig_wire", tests, NULL, NULL);
 }

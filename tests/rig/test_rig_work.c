@@ -87,9 +87,8 @@ static void free_body(const struct dig_machine *const m, const double q[3],
     push_N[0] = -load_b / cross(eye_b, rod_b);
 }
 
-static void pushes_are_those_of_free_body_statics(void **state)
+TEST(pushes_are_those_of_free_body_statics)
 {
-    (void)state;
     const struct dig_machine machine    = read_machine();
     const double             poses[][3] = {
                     { 0.2, -1.0, -0.5 },
@@ -121,9 +120,8 @@ static void pushes_are_those_of_free_body_statics(void **state)
 }
 
 // In a lift that accelerates upwards with g everything weighs twice, and nothing else changes.
-static void acceleration_upwards_by_g_doubles_the_weight(void **state)
+TEST(acceleration_upwards_by_g_doubles_the_weight)
 {
-    (void)state;
     const struct dig_machine    machine = read_machine();
     const struct dig_rig_joints joints  = { .rad = { 0.3, -1.2, -0.6 } };
     const struct dig_rig_wrench none    = { 0.0, 0.0, 0.0 };
@@ -140,9 +138,8 @@ static void acceleration_upwards_by_g_doubles_the_weight(void **state)
 }
 
 // A bucket spun up about its own centre of mass costs inertia times angular acceleration.
-static void turning_the_bucket_faster_costs_its_inertia(void **state)
+TEST(turning_the_bucket_faster_costs_its_inertia)
 {
-    (void)state;
     const struct dig_machine    machine = read_machine();
     const struct dig_rig_joints joints  = { .rad = { 0.3, -1.2, -0.6 } };
     const struct dig_rig_wrench none    = { 0.0, 0.0, 0.0 };
@@ -158,9 +155,8 @@ static void turning_the_bucket_faster_costs_its_inertia(void **state)
     }
 }
 
-static void pressures_push_the_piston_with_the_force_asked_for(void **state)
+TEST(pressures_push_the_piston_with_the_force_asked_for)
 {
-    (void)state;
     const struct dig_machine machine = read_machine();
     for (double push_N = -4e5; push_N <= 4e5; push_N += 1e4) {
         const struct dig_rig_pushes pushes = { .N = { push_N, push_N, push_N } };
@@ -179,9 +175,8 @@ static void pressures_push_the_piston_with_the_force_asked_for(void **state)
     }
 }
 
-static void pressures_do_not_jump_where_push_turns_to_pull(void **state)
+TEST(pressures_do_not_jump_where_push_turns_to_pull)
 {
-    (void)state;
     const struct dig_machine         machine = read_machine();
     const struct dig_cylinder *const c       = &machine.cylinder[DIG_JOINT_BOOM];
     const double             switch_N = c->count * c->back_Pa * DIG_PI / 4.0 * c->rod_m * c->rod_m;
@@ -196,9 +191,8 @@ static void pressures_do_not_jump_where_push_turns_to_pull(void **state)
     assert_close(after.head_Pa[0], c->back_Pa, 1.0);
 }
 
-static void cylinder_without_leverage_is_refused_and_writes_nothing(void **state)
+TEST(cylinder_without_leverage_is_refused_and_writes_nothing)
 {
-    (void)state;
     struct dig_machine          machine = read_machine();
     const struct dig_rig_joints joints  = { .rad = { 0.3, -1.2, -0.6 } };
     const struct dig_rig_wrench none    = { 0.0, 0.0, 0.0 };
@@ -211,17 +205,4 @@ static void cylinder_without_leverage_is_refused_and_writes_nothing(void **state
     assert_int_equal(dig_rig_work_solve(&machine, &joints, &still, &none, &pushes),
                      DIG_EUNREACHABLE);
     assert_close(pushes.N[0], 42.0, 0.0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pushes_are_those_of_free_body_statics),
-        cmocka_unit_test(acceleration_upwards_by_g_doubles_the_weight),
-        cmocka_unit_test(turning_the_bucket_faster_costs_its_inertia),
-        cmocka_unit_test(pressures_push_the_piston_with_the_force_asked_for),
-        cmocka_unit_test(pressures_do_not_jump_where_push_turns_to_pull),
-        cmocka_unit_test(cylinder_without_leverage_is_refused_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("rig work", tests, NULL, NULL);
 }

@@ -6,8 +6,6 @@
 #include "core/approach_set.h"
 #include "tests/tables_fixture.h"
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, scratch_setup, scratch_teardown)
-
 static void make_table(const char *const name, const struct dig_scene *const scene)
 {
     struct dig_store *const store = fixture_create_of(name, scene);
@@ -30,9 +28,8 @@ static struct dig_scene scaling_scene(void)
     return scene;
 }
 
-static void one_density_becomes_three(void **state)
+TEST_WITH(one_density_becomes_three, scratch_setup, scratch_teardown)
 {
-    (void)state;
     const struct dig_scene scene = scaling_scene();
     make_table("scales.sqlite", &scene);
     struct dig_curve_set *const set = fixture_load("scales.sqlite");
@@ -58,9 +55,8 @@ static void one_density_becomes_three(void **state)
 }
 
 // Digs deeper and turned go along, in the order of gravel, then depth.
-static void so_do_digs_made_in_another_way(void **state)
+TEST_WITH(so_do_digs_made_in_another_way, scratch_setup, scratch_teardown)
 {
-    (void)state;
     const struct dig_scene scene = scaling_scene();
     make_table("deeper.sqlite", &scene);
     struct dig_curve_set *const          set   = fixture_load("deeper.sqlite");
@@ -77,9 +73,8 @@ static void so_do_digs_made_in_another_way(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void what_was_dug_is_listed(void **state)
+TEST_WITH(what_was_dug_is_listed, scratch_setup, scratch_teardown)
 {
-    (void)state;
     const struct dig_scene scene = scaling_scene();
     make_table("listed.sqlite", &scene);
     struct dig_curve_set *set = NULL;
@@ -98,9 +93,8 @@ static void expect_as_dug(const char *const name, const struct dig_scene *const 
 }
 
 // A pull, a press or a layer of its own does not go with the density of the gravel.
-static void what_has_a_size_of_its_own_is_no_scale(void **state)
+TEST_WITH(what_has_a_size_of_its_own_is_no_scale, scratch_setup, scratch_teardown)
 {
-    (void)state;
     struct dig_scene scene = fixture_diving_scene();
     expect_as_dug("plain.sqlite", &scene);
     scene                    = scaling_scene();
@@ -131,9 +125,8 @@ static void what_has_a_size_of_its_own_is_no_scale(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void densities_that_were_dug_stand(void **state)
+TEST_WITH(densities_that_were_dug_stand, scratch_setup, scratch_teardown)
 {
-    (void)state;
     const struct dig_scene scene = scaling_scene();
     struct dig_store      *store = NULL;
     assert_int_equal(dig_store_create(scratch_path("two.sqlite"), &scene, &store, NULL), DIG_OK);
@@ -144,14 +137,4 @@ static void densities_that_were_dug_stand(void **state)
     assert_int_equal(set->entries, 2);
     assert_close((double)set->curve[0].mean[0][9], 0.7, 1e-6);
     dig_curve_set_destroy(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(one_density_becomes_three),     TEST(so_do_digs_made_in_another_way),
-        TEST(what_was_dug_is_listed),        TEST(what_has_a_size_of_its_own_is_no_scale),
-        TEST(densities_that_were_dug_stand),
-    };
-    return cmocka_run_group_tests_name("density_scale", tests, NULL, NULL);
 }

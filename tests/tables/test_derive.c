@@ -11,9 +11,8 @@ static const struct dig_curve *curve_of(const struct dig_curve_set *const set, c
     return &set->curve[entry * set->trajectories + trajectory];
 }
 
-static void mean_and_spread_are_those_of_the_packings(void **state)
+TEST(mean_and_spread_are_those_of_the_packings)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("mean.sqlite");
     fixture_put(store, .3, .3, 1, 0, 2.0);
     fixture_put(store, .3, .3, 0, 0, 1.0);
@@ -37,9 +36,8 @@ static void mean_and_spread_are_those_of_the_packings(void **state)
 
 // A straight line is its own moving average, so away from the ends the curve is the line at the
 // time at which that part of the path is done, which is worked out by hand here.
-static void a_curve_runs_along_the_path_not_along_time(void **state)
+TEST(a_curve_runs_along_the_path_not_along_time)
 {
-    (void)state;
     struct dig_store *const     store = fixture_create("path.sqlite");
     const struct dig_run_origin pull  = fixture_origin(.3, .3, 2500.0, 0, 0);
     const struct dig_run_origin push  = fixture_origin(.3, .3, 2500.0, 0, 1);
@@ -60,9 +58,8 @@ static void a_curve_runs_along_the_path_not_along_time(void **state)
 }
 
 // A step of the moment: the average over +-0.16 s turns it into a ramp 0.32 s long.
-static void a_step_becomes_a_ramp_as_long_as_the_moving_average(void **state)
+TEST(a_step_becomes_a_ramp_as_long_as_the_moving_average)
 {
-    (void)state;
     struct dig_store *const     store  = fixture_create("step.sqlite");
     const struct dig_run_origin origin = fixture_origin(.3, .3, 2500.0, 0, 0);
     struct dig_recording        step   = fixture_recording(400, 1.0);
@@ -80,12 +77,4 @@ static void a_step_becomes_a_ramp_as_long_as_the_moving_average(void **state)
     dig_curve_set_destroy(set);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mean_and_spread_are_those_of_the_packings),
-        cmocka_unit_test(a_curve_runs_along_the_path_not_along_time),
-        cmocka_unit_test(a_step_becomes_a_ramp_as_long_as_the_moving_average),
-    };
-    return cmocka_run_group_tests_name("derive", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

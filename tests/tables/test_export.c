@@ -51,9 +51,8 @@ static void assert_is_example(char *const printed, const char *const path)
     free(printed);
 }
 
-static void the_list_is_the_example_of_the_formats(void **state)
+TEST(the_list_is_the_example_of_the_formats)
 {
-    (void)state;
     struct dig_curve_set *const set  = example();
     FILE                       *file = begin();
     dig_export_list_json(set, effects, file);
@@ -69,9 +68,8 @@ static void the_list_is_the_example_of_the_formats(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void a_name_is_quoted_in_json(void **state)
+TEST(a_name_is_quoted_in_json)
 {
-    (void)state;
     struct dig_curve_set *const set = example();
     (void)snprintf(set->scene_name, sizeof set->scene_name, "a\"b\\c\nd");
     FILE *const file = begin();
@@ -94,9 +92,8 @@ static size_t lines_of(const char *text, char second[const 256])
     return lines;
 }
 
-static void curves_are_one_line_a_point(void **state)
+TEST(curves_are_one_line_a_point)
 {
-    (void)state;
     struct dig_curve_set *const set = example();
     char                        second[256];
     FILE                       *file = begin();
@@ -123,9 +120,8 @@ static void curves_are_one_line_a_point(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void curves_with_an_effect_are_a_table_of_their_own(void **state)
+TEST(curves_with_an_effect_are_a_table_of_their_own)
 {
-    (void)state;
     struct dig_curve_set *const set = example();
     char                        second[256];
     FILE *const                 file = begin();
@@ -139,9 +135,8 @@ static void curves_with_an_effect_are_a_table_of_their_own(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void one_curve_as_json_holds_every_array(void **state)
+TEST(one_curve_as_json_holds_every_array)
 {
-    (void)state;
     struct dig_curve_set *const set  = example();
     FILE *const                 file = begin();
     dig_export_curve_json(set, 0, 0, file);
@@ -168,9 +163,8 @@ static void one_curve_as_json_holds_every_array(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void the_plot_shows_the_mean_in_every_column(void **state)
+TEST(the_plot_shows_the_mean_in_every_column)
 {
-    (void)state;
     struct dig_curve_set *const set  = example();
     FILE *const                 file = begin();
     dig_export_curve_plot(set, 0, 0, DIG_CHANNEL_FZ_N, 40, file);
@@ -188,15 +182,4 @@ static int free_effects(void **state)
     return scratch_teardown(state);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_list_is_the_example_of_the_formats),
-        cmocka_unit_test(a_name_is_quoted_in_json),
-        cmocka_unit_test(curves_are_one_line_a_point),
-        cmocka_unit_test(curves_with_an_effect_are_a_table_of_their_own),
-        cmocka_unit_test(one_curve_as_json_holds_every_array),
-        cmocka_unit_test(the_plot_shows_the_mean_in_every_column),
-    };
-    return cmocka_run_group_tests_name("export", tests, scratch_setup, free_effects);
-}
+TESTS_WITH(scratch_setup, free_effects)

@@ -58,9 +58,9 @@ static void assert_refused(const char *const path, const char *const says)
     (void)scene;
 }
 
-static void a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs(void **state)
+TEST_WITH(a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs, scratch_setup,
+          scratch_teardown)
 {
-    (void)state;
     make_good();
     static const char *const hostile[] = {
         "CREATE VIEW photos AS SELECT 1",
@@ -103,9 +103,8 @@ static void a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs(void
     }
 }
 
-static void what_is_no_number_of_its_column_is_refused(void **state)
+TEST_WITH(what_is_no_number_of_its_column_is_refused, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_good();
     // A column takes anything once its table is not STRICT; then the schema is made to look right.
 #define FORGED(table, change)                                                                      \
@@ -142,9 +141,8 @@ static void what_is_no_number_of_its_column_is_refused(void **state)
     }
 }
 
-static void numbers_out_of_all_bounds_are_refused(void **state)
+TEST_WITH(numbers_out_of_all_bounds_are_refused, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_good();
     static const struct {
         const char *sql, *says;
@@ -171,9 +169,9 @@ static void numbers_out_of_all_bounds_are_refused(void **state)
     }
 }
 
-static void texts_that_would_break_an_export_are_refused_where_runs_are_read(void **state)
+TEST_WITH(texts_that_would_break_an_export_are_refused_where_runs_are_read, scratch_setup,
+          scratch_teardown)
 {
-    (void)state;
     make_good();
     static const char *const hostile[] = {
         "UPDATE run SET engine = 'a,b'",
@@ -202,9 +200,8 @@ static void texts_that_would_break_an_export_are_refused_where_runs_are_read(voi
 }
 
 // Both trees of a table on one page, and a tree that holds itself.
-static void pages_that_belong_to_two_or_to_themselves_are_refused(void **state)
+TEST_WITH(pages_that_belong_to_two_or_to_themselves_are_refused, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_good();
     static const char *const hostile[] = {
         "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage FROM "
@@ -270,9 +267,8 @@ static void lay_journal_of_several(const char *const table, const char *const li
     free(whole);
 }
 
-static void a_journal_beside_a_table_deletes_no_other_file(void **state)
+TEST_WITH(a_journal_beside_a_table_deletes_no_other_file, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_good();
     char list[512];
     (void)snprintf(list, sizeof list, "%s", scratch_write("precious", "mine"));
@@ -294,9 +290,9 @@ static void a_journal_beside_a_table_deletes_no_other_file(void **state)
     dig_curve_set_destroy(fixture_load("good.sqlite"));
 }
 
-static void what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed(void **state)
+TEST_WITH(what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed, scratch_setup,
+          scratch_teardown)
 {
-    (void)state;
     make_good();
     static const char *const beside[] = { "good.sqlite-journal", "good.sqlite-wal" };
     const struct dig_scene   scene    = fixture_scene();
@@ -332,9 +328,8 @@ static void what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed
     }
 }
 
-static void no_table_is_made_through_a_link(void **state)
+TEST_WITH(no_table_is_made_through_a_link, scratch_setup, scratch_teardown)
 {
-    (void)state;
     const struct dig_scene scene = fixture_scene();
     struct dig_store      *store = NULL;
     struct dig_error       error = { "" };
@@ -358,9 +353,8 @@ static void no_table_is_made_through_a_link(void **state)
 
 // Debian's SQLite takes a name that begins with "file:" for a URI, which may choose another file
 // and another file system than the guarded one.
-static void a_table_is_the_file_of_its_very_name(void **state)
+TEST_WITH(a_table_is_the_file_of_its_very_name, scratch_setup, scratch_teardown)
 {
-    (void)state;
     static const char *const names[] = { "file:good.sqlite", "file:good.sqlite?vfs=unix",
                                          "file:good.sqlite?mode=memory", ":memory:" };
     make_good();
@@ -384,32 +378,4 @@ static void a_table_is_the_file_of_its_very_name(void **state)
     struct dig_curve_set *const good = fixture_load("good.sqlite");
     assert_int_equal(good->entries, 2);
     dig_curve_set_destroy(good);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(
-            a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs, scratch_setup,
-            scratch_teardown),
-        cmocka_unit_test_setup_teardown(what_is_no_number_of_its_column_is_refused, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(numbers_out_of_all_bounds_are_refused, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(
-            texts_that_would_break_an_export_are_refused_where_runs_are_read, scratch_setup,
-            scratch_teardown),
-        cmocka_unit_test_setup_teardown(pages_that_belong_to_two_or_to_themselves_are_refused,
-                                        scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_journal_beside_a_table_deletes_no_other_file,
-                                        scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(
-            what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed, scratch_setup,
-            scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_table_is_the_file_of_its_very_name, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(no_table_is_made_through_a_link, scratch_setup,
-                                        scratch_teardown),
-    };
-    return cmocka_run_group_tests_name("hostile", tests, NULL, NULL);
 }

@@ -12,9 +12,8 @@ static const struct dig_curve *curve_of(const struct dig_curve_set *const set, c
     return &set->curve[entry * set->trajectories + trajectory];
 }
 
-static void the_head_is_that_of_the_scene(void **state)
+TEST(the_head_is_that_of_the_scene)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("head.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     dig_store_close(store);
@@ -43,9 +42,8 @@ static void the_head_is_that_of_the_scene(void **state)
 
 // Out of the text that a table keeps of its scene: the step, the smallest grains, the lightest
 // gravel.
-static void the_step_is_that_of_the_scene_and_its_lightest_gravel(void **state)
+TEST(the_step_is_that_of_the_scene_and_its_lightest_gravel)
 {
-    (void)state;
     struct dig_scene scene  = fixture_scene();
     scene.time_step_s       = 5e-5;
     scene.bed.sizes         = 2;
@@ -71,9 +69,8 @@ static void the_step_is_that_of_the_scene_and_its_lightest_gravel(void **state)
 
 // Digs that differ by a factor alone go together in all numbers: what they are off by, relative to
 // their mean, is worked out by hand. A gravel dug once teaches nothing.
-static void the_covariance_is_that_of_the_packings_of_all_gravels(void **state)
+TEST(the_covariance_is_that_of_the_packings_of_all_gravels)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("covariance.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     fixture_put(store, .3, .3, 1, 0, 2.0);
@@ -101,9 +98,8 @@ static void the_covariance_is_that_of_the_packings_of_all_gravels(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void a_single_packing_takes_the_pooled_relative_spread(void **state)
+TEST(a_single_packing_takes_the_pooled_relative_spread)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("pool.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0); // mean 2, variance 2: one half of its square
     fixture_put(store, .3, .3, 1, 0, 3.0);
@@ -124,9 +120,8 @@ static void a_single_packing_takes_the_pooled_relative_spread(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void the_grid_knows_its_axes_and_its_holes(void **state)
+TEST(the_grid_knows_its_axes_and_its_holes)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("grid.sqlite");
     fixture_put(store, .9, .3, 0, 0, 1.0);
     fixture_put(store, .3, .9, 0, 0, 2.0);
@@ -155,9 +150,8 @@ static void the_grid_knows_its_axes_and_its_holes(void **state)
     dig_curve_set_destroy(NULL);
 }
 
-static void damage_is_refused_and_named(void **state)
+TEST(damage_is_refused_and_named)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("good.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     fixture_put(store, .3, .3, 1, 0, 2.0);
@@ -214,9 +208,8 @@ static void damage_is_refused_and_named(void **state)
     }
 }
 
-static void what_is_no_table_is_refused(void **state)
+TEST(what_is_no_table_is_refused)
 {
-    (void)state;
     struct dig_curve_set *set   = NULL;
     struct dig_error      error = { "" };
     assert_int_equal(dig_table_load(scratch_path("absent.sqlite"), &set, &error), DIG_EIO);
@@ -235,9 +228,8 @@ static void what_is_no_table_is_refused(void **state)
 
 // The table and its journal as they stand on the disk in the middle of a transaction: what is left
 // of a computer that lost its power.
-static void a_transaction_cut_short_is_rolled_back(void **state)
+TEST(a_transaction_cut_short_is_rolled_back)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("cut.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     dig_store_close(store);
@@ -268,9 +260,8 @@ static void a_transaction_cut_short_is_rolled_back(void **state)
 }
 
 // Cut at every page and flipped at places spread over the file: a set or a refusal, never more.
-static void a_damaged_file_never_does_worse_than_a_refusal(void **state)
+TEST(a_damaged_file_never_does_worse_than_a_refusal)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("whole.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     fixture_put(store, .3, .5, 0, 1, 2.0);
@@ -304,18 +295,4 @@ static void a_damaged_file_never_does_worse_than_a_refusal(void **state)
     assert_true(refused > 0 && refused < tried);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_head_is_that_of_the_scene),
-        cmocka_unit_test(the_step_is_that_of_the_scene_and_its_lightest_gravel),
-        cmocka_unit_test(the_covariance_is_that_of_the_packings_of_all_gravels),
-        cmocka_unit_test(a_single_packing_takes_the_pooled_relative_spread),
-        cmocka_unit_test(the_grid_knows_its_axes_and_its_holes),
-        cmocka_unit_test(damage_is_refused_and_named),
-        cmocka_unit_test(what_is_no_table_is_refused),
-        cmocka_unit_test(a_transaction_cut_short_is_rolled_back),
-        cmocka_unit_test(a_damaged_file_never_does_worse_than_a_refusal),
-    };
-    return cmocka_run_group_tests_name("load", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -32,9 +32,8 @@ static void make_table(const char *const name)
     dig_store_close(store);
 }
 
-static void turned_digs_stand_beside_the_plain_ones(void **state)
+TEST_WITH(turned_digs_stand_beside_the_plain_ones, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_table("both.sqlite");
     struct dig_curve_set *const set = fixture_load("both.sqlite");
     assert_int_equal(set->entries, 2);
@@ -67,9 +66,8 @@ static void turned_digs_stand_beside_the_plain_ones(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void a_table_without_them_has_no_such_set(void **state)
+TEST_WITH(a_table_without_them_has_no_such_set, scratch_setup, scratch_teardown)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("plain.sqlite");
     fixture_put(store, .3, .5, 0, 0, 1.0);
     dig_store_close(store);
@@ -79,9 +77,8 @@ static void a_table_without_them_has_no_such_set(void **state)
     dig_curve_set_destroy(set);
 }
 
-static void a_run_is_there_in_its_own_approach_only(void **state)
+TEST_WITH(a_run_is_there_in_its_own_approach_only, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_table("has.sqlite");
     struct dig_store *store = NULL;
     bool              there = false;
@@ -153,9 +150,8 @@ static struct dig_store *open_old(const char *const name)
     return store;
 }
 
-static void an_old_table_is_read_as_plain_and_left_alone(void **state)
+TEST_WITH(an_old_table_is_read_as_plain_and_left_alone, scratch_setup, scratch_teardown)
 {
-    (void)state;
     copy_old("old.sqlite");
     assert_int_equal(fixture_ask("old.sqlite", "PRAGMA user_version"), 2);
     struct dig_curve_set *const set = fixture_load("old.sqlite");
@@ -184,9 +180,8 @@ static void an_old_table_is_read_as_plain_and_left_alone(void **state)
     free(b);
 }
 
-static void the_first_run_added_makes_an_old_table_one_of_todays(void **state)
+TEST_WITH(the_first_run_added_makes_an_old_table_one_of_todays, scratch_setup, scratch_teardown)
 {
-    (void)state;
     copy_old("old.sqlite");
     struct dig_store *const      store   = open_old("old.sqlite");
     struct first                 one     = { .value = NULL };
@@ -243,9 +238,8 @@ static void the_first_run_added_makes_an_old_table_one_of_todays(void **state)
     free(row);
 }
 
-static void an_approach_out_of_range_is_refused_and_leaves_nothing(void **state)
+TEST_WITH(an_approach_out_of_range_is_refused_and_leaves_nothing, scratch_setup, scratch_teardown)
 {
-    (void)state;
     struct dig_store *const          store     = fixture_create("range.sqlite");
     struct dig_run_origin            origin    = fixture_origin(.3, .5, 2500.0, 0, 0);
     const struct dig_recording       recording = fixture_recording(400, 1.0);
@@ -264,9 +258,8 @@ static void an_approach_out_of_range_is_refused_and_leaves_nothing(void **state)
 
 // Down 20 mm in half a second and 50 mm along in one; at depth 1.5 it is 30 mm down, so that the
 // way along begins at 3/8 of the path, not at 2/7. The moment is the share of the path done.
-static void a_deep_dig_is_kept_over_its_own_path(void **state)
+TEST_WITH(a_deep_dig_is_kept_over_its_own_path, scratch_setup, scratch_teardown)
 {
-    (void)state;
     struct dig_scene scene = fixture_scene();
     scene.trajectories     = 1;
     scene.trajectory[0]    = (struct dig_trajectory){
@@ -299,20 +292,4 @@ static void a_deep_dig_is_kept_over_its_own_path(void **state)
         assert_close((double)set->approaches->curve[0].mean[0][k], share, 0.01);
     }
     dig_curve_set_destroy(set);
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, scratch_setup, scratch_teardown)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(turned_digs_stand_beside_the_plain_ones),
-        TEST(a_deep_dig_is_kept_over_its_own_path),
-        TEST(a_table_without_them_has_no_such_set),
-        TEST(a_run_is_there_in_its_own_approach_only),
-        TEST(an_old_table_is_read_as_plain_and_left_alone),
-        TEST(the_first_run_added_makes_an_old_table_one_of_todays),
-        TEST(an_approach_out_of_range_is_refused_and_leaves_nothing),
-    };
-    return cmocka_run_group_tests_name("load_approaches", tests, NULL, NULL);
 }

@@ -26,9 +26,8 @@ static void make_table(const char *const name)
     dig_store_close(store);
 }
 
-static void effects_are_apart_from_what_is_plain(void **state)
+TEST(effects_are_apart_from_what_is_plain)
 {
-    (void)state;
     make_table("both.sqlite");
     struct dig_curve_set *const plain = fixture_load("both.sqlite");
     assert_int_equal(plain->entries, 1);
@@ -72,9 +71,8 @@ static void effects_are_apart_from_what_is_plain(void **state)
     dig_curve_set_destroy(plain);
 }
 
-static void a_table_of_effects_alone_is_no_table_of_curves(void **state)
+TEST(a_table_of_effects_alone_is_no_table_of_curves)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("alone.sqlite");
     put_varied(store, .3, "cohesion", 5, 0, 0, 2.0);
     dig_store_close(store);
@@ -95,9 +93,8 @@ static void a_table_of_effects_alone_is_no_table_of_curves(void **state)
     dig_curve_set_destroy(plain);
 }
 
-static void what_does_not_belong_together_is_refused(void **state)
+TEST(what_does_not_belong_together_is_refused)
 {
-    (void)state;
     make_table("mine.sqlite");
     struct dig_scene  other = fixture_scene();
     struct dig_store *store = NULL;
@@ -128,9 +125,8 @@ static void what_does_not_belong_together_is_refused(void **state)
     dig_curve_set_destroy(plain);
 }
 
-static void a_run_whose_effect_nobody_knows_is_not_stored(void **state)
+TEST(a_run_whose_effect_nobody_knows_is_not_stored)
 {
-    (void)state;
     struct dig_store *const    store     = fixture_create("refuse.sqlite");
     const struct dig_recording recording = fixture_recording(400, 1.0);
     struct dig_error           error     = { "" };
@@ -147,9 +143,8 @@ static void a_run_whose_effect_nobody_knows_is_not_stored(void **state)
 }
 
 // A measured dig does not know the carried mass: neither does an entry it is part of.
-static void a_carried_mass_that_is_not_known_stays_so(void **state)
+TEST(a_carried_mass_that_is_not_known_stays_so)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("carried.sqlite");
     fixture_put(store, .3, .5, 0, 0, 1.0);
     fixture_put(store, .9, .5, 0, 0, 1.0);
@@ -168,14 +163,4 @@ static void a_carried_mass_that_is_not_known_stays_so(void **state)
     dig_curve_set_destroy(plain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(effects_are_apart_from_what_is_plain),
-        cmocka_unit_test(a_table_of_effects_alone_is_no_table_of_curves),
-        cmocka_unit_test(what_does_not_belong_together_is_refused),
-        cmocka_unit_test(a_run_whose_effect_nobody_knows_is_not_stored),
-        cmocka_unit_test(a_carried_mass_that_is_not_known_stays_so),
-    };
-    return cmocka_run_group_tests_name("load_effects", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -86,9 +86,8 @@ static char *runs_of(const char *const name)
     return scratch_read(scratch_path("runs.csv"), &size);
 }
 
-static void parts_in_any_order_give_the_bytes_of_the_whole(void **state)
+TEST_WITH(parts_in_any_order_give_the_bytes_of_the_whole, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_tables();
     static const char *const order[][PARTS] = {
         { "a.sqlite", "b.sqlite", "c.sqlite" },
@@ -114,9 +113,8 @@ static void parts_in_any_order_give_the_bytes_of_the_whole(void **state)
 }
 
 // Merging what was merged, or a part of it again, changes nothing.
-static void what_is_there_already_is_not_there_twice(void **state)
+TEST_WITH(what_is_there_already_is_not_there_twice, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_tables();
     static const char *const all[]   = { "a.sqlite", "b.sqlite", "c.sqlite" };
     static const char *const again[] = { "first.sqlite", "b.sqlite", "first.sqlite" };
@@ -162,9 +160,9 @@ static int open_and_swap(sqlite3_vfs *const vfs, const char *const path, sqlite3
     return open_as_ever(vfs, path, file, flags, got);
 }
 
-static void a_table_is_merged_as_it_was_checked_whoever_takes_its_name(void **state)
+TEST_WITH(a_table_is_merged_as_it_was_checked_whoever_takes_its_name, scratch_setup,
+          scratch_teardown)
 {
-    (void)state;
     make_tables();
     static const char *const a[]  = { "a.sqlite" };
     size_t                   size = 0, again = 0;
@@ -186,9 +184,8 @@ static void a_table_is_merged_as_it_was_checked_whoever_takes_its_name(void **st
     free(after);
 }
 
-static void what_differs_or_does_not_belong_is_refused(void **state)
+TEST_WITH(what_differs_or_does_not_belong_is_refused, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_tables();
     struct dig_store *store = fixture_create("liar.sqlite");
     put(store, 0, 7.0, "2026-01-01T00:00:00Z");
@@ -212,19 +209,4 @@ static void what_differs_or_does_not_belong_is_refused(void **state)
     assert_int_equal(dig_store_merge(scratch_path("b.sqlite"), 1, input, &error), DIG_EINVAL);
     assert_contains(error.text, "b.sqlite: exists, expected a new file");
     assert_int_equal(dig_store_merge(scratch_path("no/b.sqlite"), 1, input, &error), DIG_EIO);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(parts_in_any_order_give_the_bytes_of_the_whole,
-                                        scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(what_is_there_already_is_not_there_twice, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_table_is_merged_as_it_was_checked_whoever_takes_its_name,
-                                        scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(what_differs_or_does_not_belong_is_refused, scratch_setup,
-                                        scratch_teardown),
-    };
-    return cmocka_run_group_tests_name("merge", tests, NULL, NULL);
 }

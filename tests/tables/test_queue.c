@@ -28,9 +28,8 @@ static struct dig_queue queue_of(struct dig_store *const store, const struct dig
     return queue;
 }
 
-static void every_point_has_a_first_bed_before_any_has_a_second(void **state)
+TEST(every_point_has_a_first_bed_before_any_has_a_second)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("order.sqlite");
     const struct dig_plan   plan  = plan_of(3);
     struct dig_queue        queue = queue_of(store, &plan);
@@ -53,9 +52,8 @@ static void every_point_has_a_first_bed_before_any_has_a_second(void **state)
     dig_store_close(store);
 }
 
-static void what_the_table_holds_is_not_dug_again(void **state)
+TEST(what_the_table_holds_is_not_dug_again)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("resume.sqlite");
     const struct dig_plan   plan  = plan_of(2);
     fixture_put(store, .3, .2, 0, 0, 1.0);
@@ -90,9 +88,8 @@ static void what_the_table_holds_is_not_dug_again(void **state)
 }
 
 // What one point lacks says nothing of another with an effect, and some points have more beds.
-static void points_differ_in_effect_magnitude_and_packings(void **state)
+TEST(points_differ_in_effect_magnitude_and_packings)
 {
-    (void)state;
     struct dig_store *const     store    = fixture_create("effects.sqlite");
     const struct dig_plan_point points[] = {
         { .gravel = { { .3, .2, 2500 } }, .packings = 1 },
@@ -122,9 +119,8 @@ static void points_differ_in_effect_magnitude_and_packings(void **state)
     dig_store_close(store);
 }
 
-static void the_shards_of_a_plan_are_all_of_it_once(void **state)
+TEST(the_shards_of_a_plan_are_all_of_it_once)
 {
-    (void)state;
     struct dig_store *const store = fixture_create("shards.sqlite");
     struct dig_plan         plan  = plan_of(3);
     struct dig_queue        whole = queue_of(store, &plan);
@@ -163,9 +159,8 @@ static void the_shards_of_a_plan_are_all_of_it_once(void **state)
 }
 
 // sha256sum of the documented text, first 16 hex digits, halved.
-static void the_seed_is_the_documented_hash(void **state)
+TEST(the_seed_is_the_documented_hash)
 {
-    (void)state;
     const struct dig_gravel gravel = { { 0.5, 0.25, 2500.0 } };
     assert_true(dig_bed_seed(&gravel, 3) == UINT64_C(0x81be28b15b965613) >> 1);
     assert_true(dig_bed_seed(&gravel, 3) < UINT64_C(1) << 63);
@@ -173,14 +168,4 @@ static void the_seed_is_the_documented_hash(void **state)
     assert_true(dig_bed_seed(&other, 3) != dig_bed_seed(&gravel, 3));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_point_has_a_first_bed_before_any_has_a_second),
-        cmocka_unit_test(what_the_table_holds_is_not_dug_again),
-        cmocka_unit_test(points_differ_in_effect_magnitude_and_packings),
-        cmocka_unit_test(the_shards_of_a_plan_are_all_of_it_once),
-        cmocka_unit_test(the_seed_is_the_documented_hash),
-    };
-    return cmocka_run_group_tests_name("queue", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

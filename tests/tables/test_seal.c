@@ -26,9 +26,8 @@ static enum dig_status try_load(const char *const path, struct dig_error *const 
     return status;
 }
 
-static void every_column_of_a_run_and_of_an_entry_counts(void **state)
+TEST_WITH(every_column_of_a_run_and_of_an_entry_counts, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_sealed("good.sqlite");
     assert_int_equal(try_load(scratch_path("good.sqlite"), NULL), DIG_OK);
     static const char *const changes[] = {
@@ -74,9 +73,8 @@ static void every_column_of_a_run_and_of_an_entry_counts(void **state)
 }
 
 // One bit anywhere in the file: in pages of tables and indexes, in the header, between rows.
-static void a_flipped_bit_is_found_or_changes_nothing(void **state)
+TEST_WITH(a_flipped_bit_is_found_or_changes_nothing, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_sealed("good.sqlite");
     uint64_t before = 0;
     assert_true(table_content(scratch_path("good.sqlite"), &before));
@@ -106,9 +104,8 @@ static void a_flipped_bit_is_found_or_changes_nothing(void **state)
     assert_true(refused > 0 && as_before > 0); // rows, and what is free between them
 }
 
-static void a_table_of_before_is_read_and_sealed_when_asked(void **state)
+TEST_WITH(a_table_of_before_is_read_and_sealed_when_asked, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_sealed("good.sqlite");
     const char *const path   = fixture_copy_bare("good.sqlite", "bare.sqlite", "");
     uint64_t          before = 0;
@@ -129,9 +126,8 @@ static void a_table_of_before_is_read_and_sealed_when_asked(void **state)
                 fixture_ask("good.sqlite", "SELECT sum(sum / 16) FROM seal"));
 }
 
-static void what_is_damaged_already_is_not_sealed(void **state)
+TEST_WITH(what_is_damaged_already_is_not_sealed, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_sealed("good.sqlite");
     struct dig_error  error = { "" };
     bool              was   = true;
@@ -145,9 +141,8 @@ static void what_is_damaged_already_is_not_sealed(void **state)
     assert_false(scratch_exists("absent.sqlite"));
 }
 
-static void a_merged_table_has_the_seals_of_its_inputs(void **state)
+TEST_WITH(a_merged_table_has_the_seals_of_its_inputs, scratch_setup, scratch_teardown)
 {
-    (void)state;
     make_sealed("good.sqlite");
     char out[512];
     (void)snprintf(out, sizeof out, "%s", scratch_path("merged.sqlite"));
@@ -159,21 +154,4 @@ static void a_merged_table_has_the_seals_of_its_inputs(void **state)
     assert_int_equal(try_load(out, NULL), DIG_OK);
     assert_true(fixture_ask("merged.sqlite", "SELECT sum(sum / 16) FROM seal") ==
                 fixture_ask("good.sqlite", "SELECT sum(sum / 16) FROM seal"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_column_of_a_run_and_of_an_entry_counts, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_flipped_bit_is_found_or_changes_nothing, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_table_of_before_is_read_and_sealed_when_asked,
-                                        scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(what_is_damaged_already_is_not_sealed, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_merged_table_has_the_seals_of_its_inputs, scratch_setup,
-                                        scratch_teardown),
-    };
-    return cmocka_run_group_tests_name("seal", tests, NULL, NULL);
 }

@@ -10,9 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-static void a_new_table_says_what_it_is(void **state)
+TEST(a_new_table_says_what_it_is)
 {
-    (void)state;
     dig_store_close(fixture_create("new.sqlite"));
     assert_int_equal(fixture_ask("new.sqlite", "PRAGMA application_id"), 0x44494754);
     assert_int_equal(fixture_ask("new.sqlite", "PRAGMA user_version"), 4);
@@ -52,9 +51,8 @@ static bool has(struct dig_store *const store, const struct dig_run_origin key)
     return there;
 }
 
-static void a_run_comes_back_with_where_it_came_from(void **state)
+TEST(a_run_comes_back_with_where_it_came_from)
 {
-    (void)state;
     struct dig_store *store = fixture_create("run.sqlite");
     fixture_put(store, .3, .5, 7, 1, 0.75);
     assert_true(has(store, fixture_origin(.3, .5, 2500.0, 7, 1)));
@@ -83,9 +81,8 @@ static void a_run_comes_back_with_where_it_came_from(void **state)
     dig_store_close(store);
 }
 
-static void a_run_is_stored_once_and_a_bad_one_not_at_all(void **state)
+TEST(a_run_is_stored_once_and_a_bad_one_not_at_all)
 {
-    (void)state;
     struct dig_store           *store     = fixture_create("once.sqlite");
     struct dig_error            error     = { "" };
     const struct dig_run_origin origin    = fixture_origin(.3, .5, 2500.0, 0, 0);
@@ -112,9 +109,8 @@ static void a_run_is_stored_once_and_a_bad_one_not_at_all(void **state)
     assert_int_equal(fixture_ask("once.sqlite", "SELECT count(*) FROM entry"), 1);
 }
 
-static void runs_put_together_are_stored_together_or_not_at_all(void **state)
+TEST(runs_put_together_are_stored_together_or_not_at_all)
 {
-    (void)state;
     struct dig_store           *store     = fixture_create("together.sqlite");
     const struct dig_run_origin before    = fixture_origin(.3, .5, 2500.0, 0, 0);
     const struct dig_run_origin first     = fixture_origin(.3, .5, 2500.0, 1, 0);
@@ -142,9 +138,8 @@ static void runs_put_together_are_stored_together_or_not_at_all(void **state)
     assert_int_equal(fixture_ask("together.sqlite", "SELECT count(*) FROM run"), 3);
 }
 
-static void another_scene_is_refused_and_both_are_named(void **state)
+TEST(another_scene_is_refused_and_both_are_named)
 {
-    (void)state;
     dig_store_close(fixture_create("scene.sqlite"));
     size_t            before_size = 0, after_size = 0;
     char *const       before = scratch_read(scratch_path("scene.sqlite"), &before_size);
@@ -165,9 +160,8 @@ static void another_scene_is_refused_and_both_are_named(void **state)
     free(after);
 }
 
-static void what_cannot_become_a_table_is_left_as_it_was(void **state)
+TEST(what_cannot_become_a_table_is_left_as_it_was)
 {
-    (void)state;
     struct dig_scene  scene = fixture_scene();
     struct dig_error  error = { "" };
     struct dig_store *store = NULL;
@@ -201,18 +195,16 @@ static void what_cannot_become_a_table_is_left_as_it_was(void **state)
     assert_null(store);
 }
 
-static void a_file_not_yet_filled_becomes_a_table(void **state)
+TEST(a_file_not_yet_filled_becomes_a_table)
 {
-    (void)state;
     (void)scratch_write("empty.sqlite", "");
     dig_store_close(fixture_create("empty.sqlite"));
     assert_int_equal(fixture_ask("empty.sqlite", "SELECT count(*) FROM scene"), 1);
 }
 
 // Laws and beds stand in the canonical text behind the trajectories.
-static void a_scene_that_is_not_plain_has_a_table_too(void **state)
+TEST(a_scene_that_is_not_plain_has_a_table_too)
 {
-    (void)state;
     struct dig_scene  scene = fixture_scene();
     struct dig_store *store = NULL;
     struct dig_error  error = { "" };
@@ -228,9 +220,8 @@ static void a_scene_that_is_not_plain_has_a_table_too(void **state)
     dig_store_close(store);
 }
 
-static void there_is_one_writer_at_a_time(void **state)
+TEST(there_is_one_writer_at_a_time)
 {
-    (void)state;
     struct dig_store      *first  = fixture_create("lock.sqlite");
     struct dig_store      *second = NULL;
     const struct dig_scene scene  = fixture_scene();
@@ -248,9 +239,8 @@ static void there_is_one_writer_at_a_time(void **state)
 
 // Killed at moments spread over its work, a writer leaves whole runs with their entries, and the
 // next one goes on behind the last of them.
-static void a_killed_writer_leaves_whole_runs_only(void **state)
+TEST(a_killed_writer_leaves_whole_runs_only)
 {
-    (void)state;
     dig_store_close(fixture_create("killed.sqlite"));
     for (int round = 1; round <= 8; round++) {
         const sqlite3_int64 before = fixture_ask("killed.sqlite", "SELECT count(*) FROM run");
@@ -288,9 +278,8 @@ static void a_killed_writer_leaves_whole_runs_only(void **state)
     assert_int_equal(fixture_ask("killed.sqlite", "SELECT count(*) - max(packing) FROM run"), 1);
 }
 
-static void the_check_counts_holes_and_finds_entries_that_lie(void **state)
+TEST(the_check_counts_holes_and_finds_entries_that_lie)
 {
-    (void)state;
     struct dig_store *store = fixture_create("check.sqlite");
     fixture_put(store, .3, .3, 0, 0, 1.0);
     fixture_put(store, .3, .3, 1, 0, 2.0);
@@ -326,20 +315,4 @@ static void the_check_counts_holes_and_finds_entries_that_lie(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_new_table_says_what_it_is),
-        cmocka_unit_test(a_run_comes_back_with_where_it_came_from),
-        cmocka_unit_test(a_run_is_stored_once_and_a_bad_one_not_at_all),
-        cmocka_unit_test(runs_put_together_are_stored_together_or_not_at_all),
-        cmocka_unit_test(another_scene_is_refused_and_both_are_named),
-        cmocka_unit_test(what_cannot_become_a_table_is_left_as_it_was),
-        cmocka_unit_test(a_file_not_yet_filled_becomes_a_table),
-        cmocka_unit_test(a_scene_that_is_not_plain_has_a_table_too),
-        cmocka_unit_test(there_is_one_writer_at_a_time),
-        cmocka_unit_test(a_killed_writer_leaves_whole_runs_only),
-        cmocka_unit_test(the_check_counts_holes_and_finds_entries_that_lie),
-    };
-    return cmocka_run_group_tests_name("store", tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)

@@ -45,9 +45,8 @@ static void make_table(const char *const name, const struct dig_scene *const sce
     dig_store_close(store);
 }
 
-static void a_table_tells_the_scene_it_was_made_in_to_the_last_bit(void **state)
+TEST(a_table_tells_the_scene_it_was_made_in_to_the_last_bit)
 {
-    (void)state;
     const struct dig_scene made[] = { fixture_scene(), uneven(), uneven_across() };
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         const struct dig_scene *const a = &made[i];
@@ -75,9 +74,8 @@ static void a_table_tells_the_scene_it_was_made_in_to_the_last_bit(void **state)
     }
 }
 
-static void what_is_no_table_is_refused_and_leaves_the_scene_alone(void **state)
+TEST(what_is_no_table_is_refused_and_leaves_the_scene_alone)
 {
-    (void)state;
     struct dig_error error = { "" };
     struct dig_scene b     = { .name = "mine" };
     assert_int_equal(dig_table_scene(scratch_path("none.sqlite"), &b, &error), DIG_EIO);
@@ -103,9 +101,8 @@ static void expect_no_scene(const char *const text)
     assert_string_equal(b.name, "mine");
 }
 
-static void a_scene_without_bucket_box_or_grains_is_none(void **state)
+TEST(a_scene_without_bucket_box_or_grains_is_none)
 {
-    (void)state;
     struct dig_scene plain = fixture_scene();
     plain.trajectories     = 1;
     make_table("whole.sqlite", &plain);
@@ -139,12 +136,4 @@ static void a_scene_without_bucket_box_or_grains_is_none(void **state)
     assert_int_equal(b.bucket.points, 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_table_tells_the_scene_it_was_made_in_to_the_last_bit),
-        cmocka_unit_test(what_is_no_table_is_refused_and_leaves_the_scene_alone),
-        cmocka_unit_test(a_scene_without_bucket_box_or_grains_is_none),
-    };
-    return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
-}
+TESTS_WITH(scratch_setup, scratch_teardown)
