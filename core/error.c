@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 
 enum dig_status dig_error_set(struct dig_error *const error, const enum dig_status status,
                               const char *const format, ...)
@@ -16,7 +17,11 @@ enum dig_status dig_error_set(struct dig_error *const error, const enum dig_stat
         va_start(args, format);
         (void)vsnprintf(error->text, sizeof error->text, format, args);
         va_end(args);
-        dig_text_clean(error->text); // it quotes what files hold
+        // It quotes what files hold: that may neither begin a line of its own nor move the cursor.
+        dig_text_clean(error->text);
+        for (char *c = error->text; (c = strpbrk(c, "\n\t")) != NULL;) {
+            *c = '?';
+        }
     }
     return status;
 }

@@ -69,6 +69,13 @@ TEST(cleaned_text_keeps_its_length_and_its_characters)
     assert_string_equal(text, "a?[2J\xc3\xa9?\n?? z??");
 }
 
+TEST(an_error_is_one_line)
+{
+    struct dig_error error = { "" };
+    (void)dig_error_set(&error, DIG_EINVAL, "trigger \"%s\" is none", "\nrm x\n\treturn #");
+    assert_string_equal(error.text, "trigger \"?rm x??return #\" is none");
+}
+
 TEST(an_error_holds_no_escape_sequence_and_no_half_character)
 {
     struct dig_error error = { "" };

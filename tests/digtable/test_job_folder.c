@@ -59,6 +59,25 @@ TEST_WITH(table_and_folder_mean_the_same, fresh, gone)
     }
 }
 
+// Whoever sent the folder would choose what is written.
+TEST_WITH(a_link_in_it_is_refused, fresh, gone)
+{
+    struct dig_job_folder folder = { .lock_fd = 77 };
+    struct dig_error      error  = { "" };
+    char                  log[300];
+    (void)snprintf(log, sizeof log, "%s/t.sqlite.jobs/log", scratch_dir);
+    assert_int_equal(mkdir(log, 0777), 0);
+    assert_int_equal(symlink("../../elsewhere", scratch_path("t.sqlite.jobs/log/1.log")), 0);
+    assert_int_equal(dig_job_folder_open(scratch_path("t.sqlite"), &folder, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "log/1.log: expected a file of digtable submit's, not a "));
+    assert_int_equal(unlink(scratch_path("t.sqlite.jobs/log/1.log")), 0);
+    assert_int_equal(rmdir(log), 0);
+    assert_int_equal(symlink("..", log), 0);
+    assert_int_equal(dig_job_folder_open(scratch_path("t.sqlite"), &folder, &error), DIG_EINVAL);
+    assert_non_null(strstr(error.text, "jobs/log: expected a folder of digtable submit's, not a "));
+    assert_int_equal(unlink(log), 0);
+}
+
 TEST_WITH(what_names_no_table_is_refused, fresh, gone)
 {
     static const char *const names[] = { "", ".", "..", "a/..", "two\nlines", "\033[31m", "none" };

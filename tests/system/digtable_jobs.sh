@@ -32,6 +32,27 @@ mkdir -p "$work/taken.sqlite.jobs"
 echo mine >"$work/taken.sqlite.jobs/notes"
 digtable submit $scene $grid -o "$work/taken.sqlite"
 check "so is a folder of somebody else's, which stays" eval 'is $code 2 && grep -q "is in the way" $work/err && is "$(ls "$work/taken.sqlite.jobs")" notes'
+# A folder that came with somebody's files: what a submit opens leads nowhere else, and nothing waits.
+echo kept >"$work/target"
+mkdir "$work/target.d"
+for lure in log/1.log log/merge.log lock slurm part shards log plan.yaml; do
+    rm -rf "$work/lured.sqlite.jobs"
+    mkdir -p "$work/lured.sqlite.jobs/log"
+    touch "$work/lured.sqlite.jobs/lock"
+    rm -rf "$work/lured.sqlite.jobs/$lure"
+    case $lure in
+    part | shards | log) ln -s "$work/target.d" "$work/lured.sqlite.jobs/$lure" ;;
+    *) ln -s "$work/target" "$work/lured.sqlite.jobs/$lure" ;;
+    esac
+    digtable submit $scene $grid -o "$work/lured.sqlite"
+    check "$lure that is a link is refused, and its target stays" eval 'is $code 2 && grep -q "jobs/$lure: expected a" $work/err && is "$(cat "$work/target")" kept && is "$(ls "$work/target.d")" ""'
+    digtable status "$work/lured.sqlite"
+    check "status does not follow it either" eval 'is $code 2 && grep -q "jobs/$lure: expected a" $work/err'
+done
+rm -rf "$work/lured.sqlite.jobs/plan.yaml"
+mkfifo "$work/lured.sqlite.jobs/slurm"
+digtable submit $scene $grid -o "$work/lured.sqlite"
+check "and a pipe makes nobody wait" eval 'is $code 2 && grep -q "jobs/slurm: expected a file" $work/err'
 touch "$work/there.sqlite"
 digtable submit $scene $grid -o "$work/there.sqlite"
 check "and a table that is there" eval 'is $code 2 && grep -q "there.sqlite: exists" $work/err'

@@ -65,6 +65,54 @@ static enum dig_status find(const char *const table, struct dig_job_folder *cons
     return DIG_OK;
 }
 
+// Folders in the folder.
+static const char *const rooms[] = { "part", "shards", "log" };
+
+static bool is_room(const char *const name)
+{
+    bool is = false;
+    for (size_t i = 0; i < sizeof rooms / sizeof rooms[0]; i++) {
+        is = is || strcmp(name, rooms[i]) == 0;
+    }
+    return is;
+}
+
+// What is opened or written in the folder is there: a link would lead elsewhere, a pipe would wait.
+static enum dig_status check_entries(const char *const path, const bool rooms_too,
+                                     struct dig_error *const error)
+{
+    DIR *const      dir    = opendir(path);
+    enum dig_status status = DIG_OK;
+    if (dir == NULL && errno == ENOENT) {
+        return DIG_OK;
+    }
+    if (dir == NULL) {
+        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+    }
+    for (const struct dirent *entry; status == DIG_OK && (entry = readdir(dir)) != NULL;) {
+        const char *const name = entry->d_name;
+        struct stat       is;
+        if (strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+            continue;
+        }
+        if (fstatat(dirfd(dir), name, &is, AT_SYMLINK_NOFOLLOW) != 0) {
+            continue; // gone since: another submit's
+        }
+        if (is_room(name) && rooms_too && S_ISDIR(is.st_mode)) {
+            char room[PATH_MAX];
+            (void)snprintf(room, sizeof room, "%s/%s", path, name);
+            status = check_entries(room, false, error);
+        } else if (!S_ISREG(is.st_mode) || (is_room(name) && rooms_too)) {
+            status = dig_error_set(error, DIG_EINVAL,
+                                   "%s/%s: expected a %s of digtable submit's, not a link or "
+                                   "another kind of file",
+                                   path, name, is_room(name) && rooms_too ? "folder" : "file");
+        }
+    }
+    (void)closedir(dir);
+    return status;
+}
+
 enum dig_status dig_job_folder_open(const char *const path, struct dig_job_folder *const folder,
                                     struct dig_error *const error)
 {
@@ -81,6 +129,9 @@ enum dig_status dig_job_folder_open(const char *const path, struct dig_job_folde
         table[length - (sizeof suffix - 1)] = '\0';
     }
     enum dig_status status = find(table, &found, error);
+    if (status == DIG_OK) {
+        status = check_entries(found.path, true, error);
+    }
     if (status == DIG_OK) {
         status =
             dig_job_plan_read(dig_job_folder_file(&found, "plan.yaml", file), &found.plan, error);
@@ -130,7 +181,11 @@ static enum dig_status make_and_lock(struct dig_job_folder *const       folder,
         return dig_error_set(error, DIG_EINVAL, "%s: is in the way, and not of digtable submit",
                              folder->path);
     }
-    folder->lock_fd = open(lock, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const enum dig_status checked = check_entries(folder->path, true, error);
+    if (checked != DIG_OK) {
+        return checked;
+    }
+    folder->lock_fd = open(lock, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (folder->lock_fd < 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", lock, strerror(errno));
     }
@@ -184,8 +239,7 @@ static void name_job(const struct dig_job_folder *const folder, char job[const D
 static enum dig_status fill(const struct dig_job_wanted *const wanted,
                             struct dig_job_folder *const folder, struct dig_error *const error)
 {
-    static const char *const rooms[] = { "part", "shards", "log" };
-    char                     path[PATH_MAX];
+    char path[PATH_MAX];
     if (access(folder->table, F_OK) == 0) {
         return dig_error_set(error, DIG_EINVAL, "%s: exists, expected a new table", folder->table);
     }

@@ -36,7 +36,8 @@ static void put_script(FILE *const to, const struct dig_job_folder *const folder
     (void)fprintf(
         to,
         "task=${1-$SLURM_ARRAY_TASK_ID}\n"
-        "[ -n \"${SLURM_JOB_ID-}\" ] || exec >\"log/$task.log\" 2>&1\n\n"
+        "[ -n \"${SLURM_JOB_ID-}\" ] || { rm -f \"log/$task.log\"; exec >\"log/$task.log\" 2>&1; "
+        "}\n\n"
         "if [ \"$task\" = merge ]; then\n"
         "    [ ! -e \"$table\" ] || exit 0\n"
         "    [ \"$(ls shards | grep -c '^[0-9]*\\.sqlite$')\" -eq %zu ] || {\n"
