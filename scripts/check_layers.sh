@@ -36,7 +36,7 @@ estimator/wrench       balance correction cylinder dynamics rates statics wrench
 estimator/track        inertia_error observation phase recorded_dig route settings track window | abort_detection
                        ending estimate followed motion
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
-                       interpolate live_recording observe_dig | approach_response laid
+                       approach_response interpolate live_recording observe_dig | laid
 estimator/effects      effect template
 estimator/match        depth gravel_match match pool prefilter | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction

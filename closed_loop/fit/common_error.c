@@ -130,7 +130,7 @@ double dig_common_error_of_approaches(const struct dig_whitened_digs_group *cons
 {
     struct dig_common_error only = { .even = group->added_noise };
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        only.size[3][f] = DIG_COMMON_ERROR_OF_APPROACHES * group->added[f];
+        only.size[3][f] = group->added_error[f];
     }
     if (!(group->added_noise > 0.0)) {
         return 0.0;

@@ -19,11 +19,6 @@
 
 #define DIG_COMMON_ERROR_PARTS 4 // all but the third change slowly along the dig
 
-/// What a gravel does at another approach, over what others nearby say of it, is off by 1 sigma of
-/// this share: in tables/product.sqlite a gravel's change from what the two others' mean says, root
-/// mean square over three trajectories and four approaches, without the beds' own scatter.
-#define DIG_COMMON_ERROR_OF_APPROACHES 0.3
-
 struct dig_common_error {
     double            even;
     double            size[DIG_COMMON_ERROR_PARTS][DIG_FEATURES]; // 1 sigma, units of the table

@@ -228,7 +228,7 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
             error->size[0][f] = hypot(of_codes, unlisted) * at->feature[f];
             error->size[1][f] = unlike * added[f];
             error->size[2][f] = quick * unlisted * at->feature[f];
-            error->size[3][f] = DIG_COMMON_ERROR_OF_APPROACHES * group->added[f];
+            error->size[3][f] = group->added_error[f];
         }
         dig_shifts_fill(l->batch, g, l->soil, l->hypothesis, x, at, added, &error->shift);
         dig_common_error_build(group, error);

@@ -263,7 +263,7 @@ static void fill_shared(struct dig_whitened_digs *const batch)
     for (size_t g = 0; g < batch->groups; g++) {
         struct dig_whitened_digs_group *const group = &batch->group[g];
         double                                sigma = 0.0;
-        memset(group->added, 0, sizeof group->added);
+        memset(group->added_error, 0, sizeof group->added_error);
         for (size_t i = 0; i < batch->digs; i++) {
             const struct dig_added *const added = &batch->measured[batch->dig[i].measured].added;
             double                        feature[DIG_FEATURES];
@@ -271,9 +271,9 @@ static void fill_shared(struct dig_whitened_digs *const batch)
                 continue;
             }
             sigma += sqrt(added->noise) / (double)group->digs;
-            dig_features_of((const double(*)[DIG_CURVE_POINTS])added->value, feature);
+            dig_features_of((const double(*)[DIG_CURVE_POINTS])added->error, feature);
             for (size_t f = 0; f < DIG_FEATURES; f++) {
-                group->added[f] += feature[f] / (double)group->digs;
+                group->added_error[f] += feature[f] / (double)group->digs;
             }
         }
         group->added_noise = sigma * sigma;

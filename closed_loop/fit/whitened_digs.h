@@ -27,7 +27,7 @@ struct dig_whitened_digs_group {
     double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
     // What other approaches add to the mean, which was taken off: units of the table; and as it was
     // dug in few beds, variance of the mean.
-    double added[DIG_FEATURES];
+    double added_error[DIG_FEATURES];
     double added_noise;
 };
 

@@ -146,34 +146,79 @@ static double noise_of(const struct dig_curve_set *const set, const size_t traje
     return 0.0;
 }
 
+// By how much a dig grows with its depth, at each point: from the shallowest to the deepest that
+// the table was dug at.
+static void add_deeper(const struct dig_cell cell[SLOTS], const double range,
+                       const double deeper[const DIG_CURVE_POINTS], struct dig_added *const added)
+{
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double by = deeper[k] *
+                              (dig_cell_mean(&cell[DEEPEST], (enum dig_channel)c, k) -
+                               dig_cell_mean(&cell[SHALLOWEST], (enum dig_channel)c, k)) /
+                              range;
+            added->value[c][k] += by;
+            added->error[c][k] += DIG_PATH_ERROR * by;
+        }
+    }
+}
+
+static double mean_square(const double deeper[const DIG_CURVE_POINTS])
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum += deeper[k] * deeper[k] / DIG_CURVE_POINTS;
+    }
+    return sum;
+}
+
 enum dig_status dig_approach_added(const struct dig_curve_set *const set, const size_t trajectory,
                                    const struct dig_gravel *const   gravel,
                                    const struct dig_approach *const approach,
+                                   const double                     deeper[const DIG_CURVE_POINTS],
                                    struct dig_added *const          added)
 {
     assert(set != NULL && trajectory < set->trajectories && gravel != NULL && added != NULL);
+    enum { MADE = SLOTS };
     memset(added, 0, sizeof *added);
     if (!dig_approach_varies(set, trajectory)) {
         return DIG_OK;
     }
-    void *const memory = malloc(dig_approached_size(set, 1));
+    void *const memory = malloc(dig_approached_size(set, SLOTS + 1));
     if (memory == NULL) {
         return DIG_ENOMEM;
     }
-    struct dig_approached_slot slot = { .trajectory = trajectory, .over_depth = 1.0 };
-    (void)dig_approach_clamp(set, trajectory, approach, &slot.approach);
-    const struct dig_curve_set *const at     = dig_approached_make(set, 1, &slot, no_error, memory);
-    const struct dig_gravel           within = within_grid(set, gravel);
-    struct dig_cell                   plain;
-    struct dig_cell                   other;
-    if (dig_cell_find(set, &within, trajectory, &plain) == DIG_OK &&
-        dig_cell_find(at, &within, 0, &other) == DIG_OK) {
-        added->noise = noise_of(set, trajectory, &slot.approach);
+    const struct dig_depths    depths          = dig_approach_depths(set, trajectory);
+    const double               range           = depths.most - depths.least;
+    struct dig_approached_slot slot[SLOTS + 1] = {
+        [SHALLOWEST] = { trajectory, { depths.least, 0.0 }, 1.0 },
+        [DEEPEST]    = { trajectory, { depths.most, 0.0 }, 1.0 },
+        [MADE]       = { .trajectory = trajectory, .over_depth = 1.0 },
+    };
+    (void)dig_approach_clamp(set, trajectory, approach, &slot[MADE].approach);
+    const struct dig_curve_set *const at =
+        dig_approached_make(set, SLOTS + 1, slot, no_error, memory);
+    const struct dig_gravel within = within_grid(set, gravel);
+    struct dig_cell         plain;
+    struct dig_cell         cell[SLOTS + 1];
+    enum dig_status         status = dig_cell_find(set, &within, trajectory, &plain);
+    for (size_t i = 0; i <= SLOTS && status == DIG_OK; i++) {
+        status = dig_cell_find(at, &within, i, &cell[i]);
+    }
+    if (status == DIG_OK) {
+        added->noise = noise_of(set, trajectory, &slot[MADE].approach);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                added->value[c][k] = dig_cell_mean(&other, (enum dig_channel)c, k) -
+                added->value[c][k] = dig_cell_mean(&cell[MADE], (enum dig_channel)c, k) -
                                      dig_cell_mean(&plain, (enum dig_channel)c, k);
+                added->error[c][k] = DIG_APPROACH_ERROR * added->value[c][k];
             }
+        }
+        if (deeper != NULL && range > 0.0) {
+            add_deeper(cell, range, deeper, added);
+            added->noise += mean_square(deeper) / (range * range) *
+                            (noise_of(set, trajectory, &slot[SHALLOWEST].approach) +
+                             noise_of(set, trajectory, &slot[DEEPEST].approach));
         }
     }
     free(memory);

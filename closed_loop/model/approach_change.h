@@ -15,13 +15,21 @@ DIG_MUST_CHECK enum dig_status dig_depth_change(const struct dig_curve_set *set,
                                                 const struct dig_gravel *gravel,
                                                 double                   change[DIG_FEATURES]);
 
+/// What a gravel does at another approach, over what others nearby say of it, is off by 1 sigma of
+/// this share: in tables/product.sqlite a gravel's change from what the two others' mean says, root
+/// mean square over three trajectories and four approaches, without the beds' own scatter.
+#define DIG_APPROACH_ERROR 0.3
+
+/// The same of a dig that leaves its trajectory: it is taken for as deep everywhere as it is there.
+#define DIG_PATH_ERROR 0.5
+
 /// What a dig of a gravel at another approach, or the nearest to it that the table was dug at, adds
-/// to the plain one; over the plain path. Zeros where the table has none for the gravel.
-/// DIG_ENOMEM. About 0.2 ms an entry.
-DIG_MUST_CHECK enum dig_status dig_approach_added(const struct dig_curve_set *set,
-                                                  size_t                      trajectory,
-                                                  const struct dig_gravel    *gravel,
-                                                  const struct dig_approach  *approach,
-                                                  struct dig_added           *added);
+/// to the plain one; over the plain path. deeper: how much deeper it is besides at each point, as a
+/// share of the depth (NULL: nowhere); that changes the dig as the whole dig's depth does there.
+/// Zeros where the table has none for the gravel. DIG_ENOMEM. About 0.2 ms an entry.
+DIG_MUST_CHECK enum dig_status
+dig_approach_added(const struct dig_curve_set *set, size_t trajectory,
+                   const struct dig_gravel *gravel, const struct dig_approach *approach,
+                   const double deeper[DIG_CURVE_POINTS], struct dig_added *added);
 
 #endif // DIG_CLOSED_LOOP_MODEL_APPROACH_CHANGE_H

@@ -2,6 +2,9 @@
 // that are centred because the whole dig is at hand.
 
 #include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/recordings/path_depth.h"
+#include "core/approach_set.h"
+#include "estimator/approach/approach_slots.h"
 #include "estimator/estimator.h"
 #include "estimator/track/window.h"
 #include "estimator/wrench/wrench.h"
@@ -113,8 +116,27 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
     }
     const struct dig_route route = dig_route_make(&set->trajectory[dig->trajectory], set->tooth_m);
     return of > 0 && (double)told >= enough_share * (double)of &&
-           dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m,
-                              set->smooth_half_s, observation) == DIG_OK;
+           dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m, set->smooth_half_s,
+                              observation) == DIG_OK;
+}
+
+// By what the window holds, observed along its route.
+static void tell_path_depth(const struct dig_curve_set *const   set,
+                            const struct dig_machine_dig *const dig,
+                            const struct dig_window *const      window,
+                            double                              deeper[const DIG_CURVE_POINTS])
+{
+    const size_t           t     = (size_t)dig->trajectory;
+    const struct dig_route route = dig_route_make(&set->trajectory[t], set->tooth_m);
+    struct dig_path_depth  depth = { .poses = { 0 } };
+    for (size_t i = 0; i < window->count; i++) {
+        const double time_s = window->sample[i].time_s * sqrt(dig->lambda);
+        if (time_s >= dig->time_s[dig->contact] && time_s < dig->time_s[dig->end - 1]) {
+            dig_path_depth_add(&depth, &route, set->tooth_m, dig->track.turn_m / set->tooth_m,
+                               window->progress[i], &window->sample[i].pose);
+        }
+    }
+    dig_path_depth_tell(&depth, &route, set->approaches->depth_m[t], deeper);
 }
 
 static size_t beside(const struct dig_machine_dig *const dig, const size_t at, const double by_s)
@@ -176,6 +198,9 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
             measured->pace       = dig->pace;
             measured->trajectory = dig->trajectory;
             tell_pitch(dig, measured);
+            if (status == DIG_OK && dig_approach_varies(set, (size_t)dig->trajectory)) {
+                tell_path_depth(set, dig, window, measured->deeper);
+            }
         }
     }
     free(window);

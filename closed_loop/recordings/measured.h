@@ -15,10 +15,11 @@ enum dig_use { DIG_USE_IDENTIFY, DIG_USE_FIT, DIG_USE_HOLDOUT };
 
 #define DIG_MEASURED_MAX 64
 
-/// What a dig at another approach adds to the plain one, as the table has it: N m and N at rig
-/// scale, over the plain path.
+/// What a dig at another approach, or off its trajectory, adds to the plain one, as the table has
+/// it: N m and N at rig scale, over the plain path.
 struct dig_added {
     double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double error[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of that, all along the dig alike
     double noise; // as it was dug in few beds, in variances of one dig
 };
 
@@ -30,9 +31,10 @@ struct dig_measured {
     unsigned     pass; // how often the place was dug, counted from 1
     double       pace; // duration of the table's trajectory / of this dig, both at rig scale
 
-    struct dig_approach made;      // as its path tells; zeroed: as the table's, or not told
-    struct dig_approach taken_off; // what that adds is no longer in value; zeroed: nothing
-    struct dig_added    added;     // that
+    struct dig_approach made;        // as its path tells; zeroed: as the table's, or not told
+    double deeper[DIG_CURVE_POINTS]; // recordings/path_depth.h; zeros: along its trajectory
+    struct dig_approach taken_off;   // what that adds is no longer in value; zeroed: nothing
+    struct dig_added    added;       // that
     // How far its ground may lie elsewhere, of all depths of the table: 0: it is known; 1: anywhere
     // among them, as a machine's, or of a force recording whose path is another.
     double depth_share;

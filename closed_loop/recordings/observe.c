@@ -1,6 +1,8 @@
 #include "closed_loop/recordings/observe.h"
 
 #include "closed_loop/recordings/alignment.h"
+#include "closed_loop/recordings/path_depth.h"
+#include "core/approach_set.h"
 #include "core/units.h"
 #include "estimator/approach/approach_fit.h"
 #include "estimator/approach/approach_response.h"
@@ -261,6 +263,24 @@ static struct ends ends_of(const struct dig_trajectory *const t, const double ha
     return ends;
 }
 
+// By the rows along the trajectory.
+static void tell_path_depth(const struct dig_curve_set *const set,
+                            const struct dig_recording *const rows, const struct columns *const c,
+                            struct dig_observed *const o)
+{
+    const size_t           t     = (size_t)o->trajectory;
+    const struct dig_route route = dig_route_make(&set->trajectory[t], set->tooth_m);
+    struct dig_path_depth  depth = { .poses = { 0 } };
+    for (size_t i = 0; i < rows->rows; i++) {
+        const struct dig_force_row *const row    = &rows->row[i];
+        const double                      turn_m = set->tooth_m * DIG_RAD_PER_DEG * row->theta_deg;
+        const struct dig_path_point       pose   = { row->pin_x_m, row->pin_z_m, turn_m };
+        dig_path_depth_add(&depth, &route, set->tooth_m, o->made.attack_rad,
+                           fmin(fmax(c->progress[i], 0.0), 1.0), &pose);
+    }
+    dig_path_depth_tell(&depth, &route, set->approaches->depth_m[t], o->deeper);
+}
+
 static enum dig_status observe(const struct dig_curve_set *const set,
                                const struct dig_recording *const recording,
                                const struct columns *const c, const bool as_dug,
@@ -285,6 +305,9 @@ static enum dig_status observe(const struct dig_curve_set *const set,
     const struct columns       along = along_trajectory(c);
     const struct dig_recording rows  = { along.rows, recording->row + (along.t_s - c->t_s) };
     o.pace                           = pace_of(set, (size_t)o.trajectory, &along, &part);
+    if (!as_dug && dig_approach_varies(set, (size_t)o.trajectory)) {
+        tell_path_depth(set, &rows, &along, &o);
+    }
 
     const double                half_s = set->smooth_half_s;
     const struct dig_trajectory dug = dig_response_trajectory(set, (size_t)o.trajectory, &o.made);

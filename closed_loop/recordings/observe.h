@@ -20,9 +20,10 @@ struct dig_observed {
     int                 trajectory;
     double              off_path_m;
     struct dig_approach made; // as the way tells it; the depth only of dig_observe_as_dug(), else 1
-    struct dig_approach approach; // the nearest to that the table holds
-    double              pace;     // duration of the table's trajectory / of this dig
-    double              first,
+    struct dig_approach approach;    // the nearest to that the table holds
+    double deeper[DIG_CURVE_POINTS]; // recordings/path_depth.h; zeros of dig_observe_as_dug()
+    double pace;                     // duration of the table's trajectory / of this dig
+    double first,
         last; // progress range that was recorded: 0 and 1 but for a few hundredths of a second
     bool   measured[DIG_FORCE_CHANNELS];
     double value[DIG_FORCE_CHANNELS]

@@ -160,7 +160,7 @@ static void add_approach(const struct dig_measured *const dig,
 {
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            sd[c][k] = hypot(sd[c][k], DIG_COMMON_ERROR_OF_APPROACHES * dig->added.value[c][k]);
+            sd[c][k] = hypot(sd[c][k], dig->added.error[c][k]);
         }
     }
 }

@@ -9,6 +9,19 @@
 // The least that a depth which nobody tells is open by.
 #define LEAST_SHARE 0.125
 
+// A path that is off its trajectory by less, in depths, is taken for along it: noise of angles.
+static const double least_off = 0.04;
+
+// Whether a dig's path says that it is not the table's.
+static bool is_made_otherwise(const struct dig_measured *const dig)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sum += dig->deeper[k] * dig->deeper[k] / DIG_CURVE_POINTS;
+    }
+    return !dig_approach_is_plain(&dig->made) || sum > least_off * least_off;
+}
+
 // How far a dig is off features of the table, in variances of one dig.
 static double squares_off(const struct dig_trace_work *const w,
                           const struct dig_measured *const dig, const double model[DIG_FEATURES],
@@ -36,10 +49,11 @@ static enum dig_status compare(const struct dig_trace_work *const w, const doubl
 {
     const size_t            t      = (size_t)dig->trajectory;
     const struct dig_gravel gravel = dig_response_surface_gravel(w->surface, place);
-    const enum dig_status   status = dig_approach_added(w->set, t, &gravel, approach, added);
-    double                  feature[DIG_FEATURES];
-    double                  more[DIG_FEATURES];
-    double                  amplitude[DIG_FORCE_CHANNELS];
+    const enum dig_status   status =
+        dig_approach_added(w->set, t, &gravel, approach, dig->deeper, added);
+    double feature[DIG_FEATURES];
+    double more[DIG_FEATURES];
+    double amplitude[DIG_FORCE_CHANNELS];
     if (status != DIG_OK) {
         return status;
     }
@@ -102,7 +116,7 @@ static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         struct dig_measured *const dig = &w->measured[i];
-        if (w->surface->known[dig->trajectory] && !dig_approach_is_plain(&dig->made)) {
+        if (w->surface->known[dig->trajectory] && is_made_otherwise(dig)) {
             status = take_off_approach(w, place, way, dig);
         }
     }
@@ -205,7 +219,7 @@ static enum dig_status settle_best(const struct dig_trace_work *const w,
     bool any  = false;
     bool deep = false;
     for (size_t i = 0; i < w->digs; i++) {
-        any  = any || !dig_approach_is_plain(&w->measured[i].made);
+        any  = any || is_made_otherwise(&w->measured[i]);
         deep = deep || fabs(dig_approach_normalized(&w->measured[i].made).depth - 1.0) > 0.0;
     }
     (void)set_share(w, deep ? LEAST_SHARE : 1.0);

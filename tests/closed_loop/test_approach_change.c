@@ -28,7 +28,8 @@ TEST_WITH(a_deeper_dig_adds_what_the_table_says, set_up, NULL)
     for (size_t t = 0; t < 2; t++) {
         for (size_t g = 0; g < CUBE_GRAVELS; g++) {
             const struct dig_curve *const plain = &set->curve[2 * g + t];
-            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &way[1], &added), DIG_OK);
+            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &way[1], NULL, &added),
+                             DIG_OK);
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 for (size_t k = CORNER; k < DIG_CURVE_POINTS; k++) {
                     assert_close(added.value[c][k], 0.44 * (double)plain->mean[c][k],
@@ -39,12 +40,37 @@ TEST_WITH(a_deeper_dig_adds_what_the_table_says, set_up, NULL)
             struct dig_added          beyond;
             const struct dig_approach deep  = { .depth = 2.0 };
             const struct dig_approach level = dig_approach_plain();
-            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &deep, &beyond), DIG_OK);
+            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &deep, NULL, &beyond),
+                             DIG_OK);
             assert_memory_equal(&beyond, &added, sizeof added);
-            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &level, &added), DIG_OK);
+            assert_int_equal(dig_approach_added(set, t, &set->gravel[g], &level, NULL, &added),
+                             DIG_OK);
             assert_close(added.value[0][CORNER], 0.0, 1e-6);
         }
     }
+}
+
+// A tenth deeper over half its way: there it resists as a dig a tenth deeper, by half of which it
+// may be off.
+TEST_WITH(a_dig_that_leaves_its_trajectory_is_as_deep_as_it_is, set_up, NULL)
+{
+    const struct dig_curve_set *const set   = &table.cube.set;
+    const struct dig_approach         level = dig_approach_plain();
+    const struct dig_curve *const     plain = &set->curve[2 * 3];
+    double                            deeper[DIG_CURVE_POINTS];
+    struct dig_added                  added;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        deeper[k] = k < 150 ? 0.0 : 0.1;
+    }
+    assert_int_equal(dig_approach_added(set, 0, &set->gravel[3], &level, deeper, &added), DIG_OK);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = CORNER; k < DIG_CURVE_POINTS; k++) {
+            const double by = deeper[k] * (1.44 - 0.64) / 0.4 * (double)plain->mean[c][k];
+            assert_close(added.value[c][k], by, 0.01 * fabs((double)plain->mean[c][CORNER]));
+            assert_close(added.error[c][k], 0.5 * added.value[c][k], 1e-12);
+        }
+    }
+    assert_true(added.noise > 0.0);
 }
 
 // Half as far as it was dug adds half as much, and a turned bucket follows the same path.
@@ -57,7 +83,7 @@ TEST(a_turned_bucket_adds_what_the_table_says)
     approach_table_init(&table, CUBE_GRAVELS, 2, turned, approach_growing, 0.1, 3);
     for (size_t g = 0; g < CUBE_GRAVELS; g++) {
         const struct dig_curve *const plain = &set->curve[2 * g];
-        assert_int_equal(dig_approach_added(set, 0, &set->gravel[g], &half, &added), DIG_OK);
+        assert_int_equal(dig_approach_added(set, 0, &set->gravel[g], &half, NULL, &added), DIG_OK);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 assert_close(added.value[c][k], -0.15 * (double)plain->mean[c][k],
@@ -103,7 +129,8 @@ TEST_WITH(a_table_of_one_depth_has_none, set_up, NULL)
     table.cube.set.approaches = NULL;
     assert_int_equal(dig_depth_change(&table.cube.set, 0, NULL, change), DIG_OK);
     assert_close(change[0], 0.0, 0.0);
-    assert_int_equal(dig_approach_added(&table.cube.set, 0, &table.cube.gravel[0], &way[1], &added),
-                     DIG_OK);
+    assert_int_equal(
+        dig_approach_added(&table.cube.set, 0, &table.cube.gravel[0], &way[1], NULL, &added),
+        DIG_OK);
     assert_close(added.value[0][200], 0.0, 0.0);
 }

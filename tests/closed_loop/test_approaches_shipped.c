@@ -55,7 +55,8 @@ static void added_in(const struct dig_curve_set *const in, const size_t t,
     double           place[DIG_AXES];
     double           plain[DIG_FEATURES];
     double           amplitude[DIG_FORCE_CHANNELS];
-    assert_int_equal(dig_approach_added(in, t, &entry->gravel, &entry->approach, &added), DIG_OK);
+    assert_int_equal(dig_approach_added(in, t, &entry->gravel, &entry->approach, NULL, &added),
+                     DIG_OK);
     dig_response_surface_place(surface, &entry->gravel, place);
     dig_response_surface_features(surface, t, place, plain, amplitude);
     dig_features_of((const double(*)[DIG_CURVE_POINTS])added.value, feature);
@@ -115,7 +116,7 @@ TEST(others_tell_a_change_but_for_the_share)
     const double share = sqrt(fmax(off2, 0.0) / whole2);
     print_message("%zu digs: what others say is off by %.2f of it\n", compared, share);
     assert_true(compared >= 30);
-    assert_close(share, DIG_COMMON_ERROR_OF_APPROACHES, 0.1);
+    assert_close(share, DIG_APPROACH_ERROR, 0.1);
     free(packings);
 }
 

@@ -62,7 +62,8 @@ static void dig_so(const struct dig_approach approach[DIGS])
         struct dig_added           added;
         const int                  t = dig_curve_set_find(set, name[i]);
         assert_true(t >= 0);
-        assert_int_equal(dig_approach_added(set, (size_t)t, &gravel, &approach[i], &added), DIG_OK);
+        assert_int_equal(dig_approach_added(set, (size_t)t, &gravel, &approach[i], NULL, &added),
+                         DIG_OK);
         dig->trajectory = t;
         dig->pace       = 1.0;
         dig->last       = 1.0;

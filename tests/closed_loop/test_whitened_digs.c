@@ -92,7 +92,7 @@ TEST(what_approaches_add_is_shared)
     for (size_t i = 0; i < 4; i += 2) {
         measured[i].added.noise = 0.5;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            measured[i].added.value[0][k] = 0.3;
+            measured[i].added.error[0][k] = 0.3;
         }
     }
     bool take[DIGS];
@@ -103,8 +103,8 @@ TEST(what_approaches_add_is_shared)
         dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
         DIG_OK);
     assert_close(batch->group[0].added_noise, 0.5 / 225.0, 1e-12);
-    assert_close(batch->group[0].added[3], 0.3 / 15.0, 1e-12);
-    assert_close(batch->group[0].added[DIG_FEATURE_BINS], 0.0, 0.0);
+    assert_close(batch->group[0].added_error[3], 0.3 / 15.0, 1e-12);
+    assert_close(batch->group[0].added_error[DIG_FEATURE_BINS], 0.0, 0.0);
     dig_hypothesis_fit(batch, soil, &plain, start, DIG_FIT_BARE, &with);
     assert_close(without.approaches[0], 0.0, 0.0);
     assert_close(with.noise[0] - with.approaches[0], without.noise[0], 0.02 * without.noise[0]);

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Plain gravel that is in no table, dug deeper than the table was or with the bucket turned, and with recordings that begin in the air: nothing is
+# Plain gravel that is in no table, dug deeper than the table was, with the bucket turned, fast or off its path, and with recordings that begin in the air: nothing is
 # missing there, by force recordings and by a machine's.
 . tests/system/check.bash
 
@@ -37,6 +37,28 @@ for kind in force machine; do
     echo "      $kind: $(grep -oE '"(verdict": [^]]*\]|p_complete": [^,]*)' "$work/$kind.json" | tr '\n' ' ') friction $(told friction), rolling $(told rolling), density $(told density_kgpm3)"
     check "a fast dig has no effect of the list ($kind)" grep -qE '"verdict": \["(none|unlisted)"\]' "$work/$kind.json"
     check "and its density is told" within "$(told density_kgpm3 | cut -d ' ' -f 1)" 2070 2530
+done
+# A drag that leaves its trajectory, up by a quarter of the depth at its end or down by half as much, the same gravel.
+for way in up down; do
+    for kind in force machine; do
+        folder=$work/${way}_$kind
+        mkdir "$folder"
+        { echo "scene: $scene"; [ $kind = force ] || echo "machine: $machine"; echo "recordings:"; } >"$folder/campaign.yaml"
+        role=identify
+        for along in simpleA actual; do
+            dug=tests/data/product/off_path/${way}_$along.csv
+            if [ $kind = force ]; then cp "$dug" "$folder/$along.csv"; else
+                "$BIN/digrig" record "$dug" --machine "$machine" --scene "$scene" -q -o "$folder/$along.csv"
+            fi
+            echo "  - {file: $along.csv, trajectory: $along, role: $role}" >>"$folder/campaign.yaml"
+            role=fit
+        done
+        kind=${way}_$kind
+        "$BIN/digloop" trace tables/product.sqlite "$folder" --json "$work/$kind.json" -q 2>"$work/err" || cat "$work/err"
+        echo "      $kind: $(grep -oE '"(verdict": [^]]*\]|p_complete": [^,]*)' "$work/$kind.json" | tr '\n' ' ') density $(told density_kgpm3)"
+        check "a dig off its trajectory has no name ($kind)" grep -q '"verdict": \["none"\]' "$work/$kind.json"
+        check "and its density is told" within "$(told density_kgpm3 | cut -d ' ' -f 1)" 2150 2450
+    done
 done
 identified=$("$BIN/digloop" identify tables/product.sqlite "$work/machine/simpleA.csv" --machine "$machine" --json | tr -d '\n' | sed -E 's/.*"mean": \{[^}]*"density_kgpm3": ([^}]*)\}.*/\1/')
 check "a machine's fast dig is identified, smoothed over as much path ($identified)" within "$identified" 2070 2530

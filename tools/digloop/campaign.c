@@ -84,6 +84,7 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
             (void)dig_error_set(error, status, "%s: %s", r->file, why.text);
         } else {
             m->made = o.made;
+            memcpy(m->deeper, o.deeper, sizeof m->deeper);
             tell_depth(set, &recording, m);
         }
     }
