@@ -3,126 +3,309 @@
 #include "core/ground.h"
 #include "core/units.h"
 #include "offline_dem/law/random.h"
+#include "offline_dem/law/rigid.h"
+#include "offline_dem/shapes/clump.h"
+#include "offline_dem/world/obstacles.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
-// Cells that hold one grain at most: overlaps are within two cells around.
+#define NO_SPHERE UINT32_MAX
+
+#define ATTEMPTS 100000 // for one body, before the column counts as full
+#define GROWTH   1.1    // factor by which a full column grows
+#define TALLEST  2.0    // times the height of the solid fraction
+
+// Spheres in cells as wide as the largest of them: overlaps are within one cell around.
 struct cells {
     double    low_m[3], edge_m;
     ptrdiff_t count[3];
-    uint32_t *grain; // [cells] 1 + index, 0: free
+    uint32_t *first; // [cells]
+    uint32_t *next;  // [spheres]
 };
 
-size_t dig_packing_grains(const struct dig_scene *const scene)
+// One size of body: a sphere, or a clump of them.
+struct size_class {
+    size_t bodies;
+    double diameter_m;
+};
+
+struct pouring {
+    const struct dig_scene *scene;
+    struct dig_clump_shape  shape;
+    size_t                  spheres; // of one body
+    size_t                  size_classes;
+    struct size_class       size_class[DIG_SIZES_MAX];
+    double                  period_m; // along y; 0: walls
+    struct dig_obstacles    obstacles;
+    struct cells            cells;
+    double                  inset_m;             // of where centres are drawn from the walls
+    double                  low_m[3], high_m[3]; // where centres are drawn: box and column
+    double                  tallest_m;
+};
+
+static void plan_size_classes(struct pouring *const p)
 {
-    const struct dig_box *const box      = &scene->box;
-    const double                d_m      = scene->material.diameter_m;
-    const double                grain_m3 = DIG_PI / 6.0 * d_m * d_m * d_m;
-    const double box_m3 = (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m) *
-                          (dig_scene_ground_max_m(scene) - box->z_min_m);
-    return (size_t)floor(scene->packing.fill_factor * box_m3 / grain_m3);
+    const struct dig_scene *const scene    = p->scene;
+    const struct dig_box *const   box      = &scene->box;
+    const double                  height_m = dig_scene_ground_max_m(scene) - box->z_min_m;
+    const double box_m3 = (box->x_max_m - box->x_min_m) * (box->y_max_m - box->y_min_m) * height_m;
+    const struct dig_size one   = { scene->material.diameter_m, 1.0 };
+    const size_t          sizes = scene->bed.sizes;
+    p->size_classes             = sizes > 0 ? sizes : 1;
+    for (size_t i = 0; i < p->size_classes; i++) {
+        const struct dig_size   size = sizes > 0 ? scene->bed.size[i] : one;
+        const double            d_m  = size.diameter_m;
+        const double            m3   = DIG_PI / 6.0 * d_m * d_m * d_m;
+        const struct size_class made = {
+            .bodies = (size_t)floor(scene->packing.fill_factor * box_m3 * size.mass_fraction / m3),
+            .diameter_m = d_m,
+        };
+        size_t k = i;
+        for (; k > 0 && p->size_class[k - 1].diameter_m < d_m; k--) {
+            p->size_class[k] = p->size_class[k - 1];
+        }
+        p->size_class[k] = made;
+    }
+
+    // Plain gravel draws no centre that a wall refuses: its tables were made so.
+    const struct dig_bed_plan *const bed = &scene->bed;
+    if (sizes == 0 && bed->clump.spheres == 0 && bed->obstacles == 0 && !bed->periodic_y) {
+        p->inset_m = 0.5 * scene->material.diameter_m;
+    }
+    p->low_m[0]  = box->x_min_m + p->inset_m;
+    p->low_m[1]  = box->y_min_m + p->inset_m;
+    p->low_m[2]  = box->z_min_m + p->inset_m;
+    p->high_m[0] = box->x_max_m - p->inset_m;
+    p->high_m[1] = box->y_max_m - p->inset_m;
+    p->high_m[2] = box->z_min_m +
+                   height_m * scene->packing.fill_factor / scene->packing.solid_fraction -
+                   p->inset_m;
+    p->tallest_m = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * TALLEST;
+    p->period_m  = dig_scene_period_m(scene);
 }
 
-static bool is_free(const struct cells *const cells, const ptrdiff_t at[3], const double p[3],
-                    const double d_m, const double *const position[3])
+static size_t count_spheres(const struct pouring *const p)
 {
-    ptrdiff_t low[3];
-    ptrdiff_t high[3];
-    for (int a = 0; a < 3; a++) {
-        low[a]  = at[a] > 2 ? at[a] - 2 : 0;
-        high[a] = at[a] + 2 < cells->count[a] ? at[a] + 2 : cells->count[a] - 1;
+    size_t n = 0;
+    for (size_t i = 0; i < p->size_classes; i++) {
+        n += p->size_class[i].bodies * p->spheres;
     }
-    for (ptrdiff_t iz = low[2]; iz <= high[2]; iz++) {
-        for (ptrdiff_t iy = low[1]; iy <= high[1]; iy++) {
-            for (ptrdiff_t ix = low[0]; ix <= high[0]; ix++) {
-                const uint32_t g = cells->grain[ix + cells->count[0] * (iy + cells->count[1] * iz)];
-                if (g == 0) {
-                    continue;
-                }
-                const double dx = p[0] - position[0][g - 1];
-                const double dy = p[1] - position[1][g - 1];
-                const double dz = p[2] - position[2][g - 1];
-                if (dx * dx + dy * dy + dz * dz < d_m * d_m) {
-                    return false;
+    return n;
+}
+
+static enum dig_status make_cells(struct pouring *const p, const size_t n)
+{
+    struct cells *const c     = &p->cells;
+    double              most  = 0.5;
+    size_t              total = 1;
+    for (size_t k = 0; k < p->shape.spheres; k++) {
+        most = k == 0 ? p->shape.radius[0] : fmax(most, p->shape.radius[k]);
+    }
+    c->edge_m = 2.0 * most * p->size_class[0].diameter_m;
+    for (int a = 0; a < 3; a++) {
+        if (!(p->high_m[a] > p->low_m[a])) {
+            return DIG_EUNREACHABLE;
+        }
+        const double span_m = (a == 2 ? p->tallest_m : p->high_m[a]) - p->low_m[a];
+        c->low_m[a]         = p->low_m[a];
+        c->count[a]         = (ptrdiff_t)(span_m / c->edge_m) + 1;
+        total *= (size_t)c->count[a];
+    }
+    c->first = malloc(total * sizeof *c->first);
+    c->next  = malloc((n + 1) * sizeof *c->next);
+    if (c->first == NULL || c->next == NULL) {
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < total; i++) {
+        c->first[i] = NO_SPHERE;
+    }
+    return DIG_OK;
+}
+
+static void find_cell(const struct cells *const c, const double at_m[3], ptrdiff_t cell[3])
+{
+    for (int a = 0; a < 3; a++) {
+        const ptrdiff_t i = (ptrdiff_t)floor((at_m[a] - c->low_m[a]) / c->edge_m);
+        cell[a]           = i < 0 ? 0 : i >= c->count[a] ? c->count[a] - 1 : i;
+    }
+}
+
+static bool overlaps_one(const struct pouring *const p, const struct dig_bed *const bed,
+                         const double at_m[3], const double radius_m, const ptrdiff_t cell)
+{
+    for (uint32_t g = p->cells.first[cell]; g != NO_SPHERE; g = p->cells.next[g]) {
+        const double dx = at_m[0] - bed->x_m[g];
+        const double dy = at_m[1] - bed->y_m[g];
+        const double dz = at_m[2] - bed->z_m[g];
+        const double s  = radius_m + bed->radius_m[g];
+        if (dx * dx + dy * dy + dz * dz < s * s) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool overlaps(const struct pouring *const p, const struct dig_bed *const bed,
+                     const double at_m[3], const double radius_m)
+{
+    ptrdiff_t cell[3] = { 0 };
+    find_cell(&p->cells, at_m, cell);
+    const ptrdiff_t *const n = p->cells.count;
+    for (ptrdiff_t z = cell[2] - 1; z <= cell[2] + 1; z++) {
+        for (ptrdiff_t y = cell[1] - 1; y <= cell[1] + 1; y++) {
+            for (ptrdiff_t x = cell[0] - 1; x <= cell[0] + 1; x++) {
+                if (z >= 0 && z < n[2] && y >= 0 && y < n[1] && x >= 0 && x < n[0] &&
+                    overlaps_one(p, bed, at_m, radius_m, x + n[0] * (y + n[1] * z))) {
+                    return true;
                 }
             }
+        }
+    }
+    return false;
+}
+
+// Inside the walls, clear of the obstacles and of every sphere so far, in every image.
+static bool is_free(const struct pouring *const p, const struct dig_bed *const bed,
+                    const double at_m[3], const double radius_m)
+{
+    for (int a = 0; a < 3; a++) {
+        const double keep_m = a == 1 && p->period_m > 0.0 ? 0.0 : radius_m - p->inset_m;
+        if (at_m[a] < p->low_m[a] + keep_m || at_m[a] > p->high_m[a] - keep_m) {
+            return false;
+        }
+    }
+    for (size_t r = 0; r < p->obstacles.rocks; r++) {
+        double closest_m[3];
+        if (dig_rock_closest(&p->obstacles.rock[r], at_m, closest_m) < radius_m) {
+            return false;
+        }
+    }
+    const int images = p->period_m > 0.0 ? 1 : 0;
+    for (int image = -images; image <= images; image++) {
+        const double shown[3] = { at_m[0], at_m[1] + image * p->period_m, at_m[2] };
+        if (overlaps(p, bed, shown, radius_m)) {
+            return false;
         }
     }
     return true;
 }
 
-static enum dig_status insert(struct cells *const cells, double high_m[3], const double d_m,
-                              const uint64_t seed, const size_t n, double *const position[3])
+// A uniform random rotation (Shoemake, Graphics Gems III).
+static void random_rotation(struct dig_random *const random, double q[4])
 {
-    const double tallest_m = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * DIG_PACKING_TALLEST;
-    struct dig_random random = { .state = seed };
-    for (size_t i = 0; i < n; i++) {
-        int attempt = 0;
-        for (; attempt < DIG_PACKING_ATTEMPTS; attempt++) {
-            double    p[3];
-            ptrdiff_t at[3];
-            for (int a = 0; a < 3; a++) {
-                p[a]  = dig_random_between(&random, cells->low_m[a], high_m[a]);
-                at[a] = (ptrdiff_t)((p[a] - cells->low_m[a]) / cells->edge_m);
-            }
-            if (is_free(cells, at, p, d_m, (const double *const *)position)) {
-                for (int a = 0; a < 3; a++) {
-                    position[a][i] = p[a];
-                }
-                cells->grain[at[0] + cells->count[0] * (at[1] + cells->count[1] * at[2])] =
-                    (uint32_t)(i + 1);
-                break;
-            }
+    const double u = dig_random_between(random, 0.0, 1.0);
+    const double a = dig_random_between(random, 0.0, 2.0 * DIG_PI);
+    const double b = dig_random_between(random, 0.0, 2.0 * DIG_PI);
+    q[0]           = sqrt(1.0 - u) * sin(a);
+    q[1]           = sqrt(1.0 - u) * cos(a);
+    q[2]           = sqrt(u) * sin(b);
+    q[3]           = sqrt(u) * cos(b);
+}
+
+// One attempt to insert a body of this diameter: positions of its spheres. False when it overlaps.
+static bool try_body(const struct pouring *const p, const struct dig_bed *const bed,
+                     const double diameter_m, struct dig_random *const random, double at_m[][3])
+{
+    double centre_m[3];
+    double q[4] = { 1.0, 0.0, 0.0, 0.0 };
+    for (int a = 0; a < 3; a++) {
+        centre_m[a] = dig_random_between(random, p->low_m[a], p->high_m[a]);
+    }
+    if (p->shape.spheres > 0) {
+        random_rotation(random, q);
+    }
+    for (size_t k = 0; k < p->spheres; k++) {
+        double arm[3] = { 0.0, 0.0, 0.0 };
+        double radius = 0.5;
+        if (p->shape.spheres > 0) {
+            dig_rigid_rotate(q, p->shape.at[k], arm);
+            radius = p->shape.radius[k];
         }
-        if (attempt == DIG_PACKING_ATTEMPTS) {
-            high_m[2] = cells->low_m[2] + (high_m[2] - cells->low_m[2]) * DIG_PACKING_GROWTH;
-            if (high_m[2] > tallest_m) {
-                return DIG_EUNREACHABLE;
+        for (int a = 0; a < 3; a++) {
+            at_m[k][a] = centre_m[a] + diameter_m * arm[a];
+        }
+        if (!is_free(p, bed, at_m[k], radius * diameter_m)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void insert_body(struct pouring *const p, struct dig_bed *const bed, const size_t first,
+                        const double diameter_m, const double at_m[][3])
+{
+    for (size_t k = 0; k < p->spheres; k++) {
+        const size_t g   = first + k;
+        bed->x_m[g]      = at_m[k][0];
+        bed->y_m[g]      = at_m[k][1];
+        bed->z_m[g]      = at_m[k][2];
+        bed->radius_m[g] = diameter_m * (p->shape.spheres > 0 ? p->shape.radius[k] : 0.5);
+        if (bed->clump != NULL) {
+            bed->clump[g] = (uint32_t)(first / p->spheres + 1);
+        }
+        ptrdiff_t cell[3];
+        find_cell(&p->cells, at_m[k], cell);
+        const ptrdiff_t c = cell[0] + p->cells.count[0] * (cell[1] + p->cells.count[1] * cell[2]);
+        p->cells.next[g]  = p->cells.first[c];
+        p->cells.first[c] = (uint32_t)g;
+    }
+}
+
+static enum dig_status insert(struct pouring *const p, const uint64_t seed,
+                              struct dig_bed *const bed)
+{
+    struct dig_random random = { .state = seed };
+    size_t            first  = 0;
+    for (size_t c = 0; c < p->size_classes; c++) {
+        for (size_t i = 0; i < p->size_class[c].bodies;) {
+            double at_m[DIG_CLUMP_MAX][3];
+            int    attempt = 0;
+            while (attempt < ATTEMPTS &&
+                   !try_body(p, bed, p->size_class[c].diameter_m, &random, at_m)) {
+                attempt++;
             }
-            i--; // the same grain again
+            if (attempt == ATTEMPTS) {
+                p->high_m[2] = p->low_m[2] + (p->high_m[2] - p->low_m[2]) * GROWTH;
+                if (p->high_m[2] > p->tallest_m) {
+                    return DIG_EUNREACHABLE;
+                }
+                continue;
+            }
+            insert_body(p, bed, first, p->size_class[c].diameter_m, (const double(*)[3])at_m);
+            first += p->spheres;
+            i++;
         }
     }
     return DIG_OK;
 }
 
 enum dig_status dig_packing_insert(const struct dig_scene *const scene, const uint64_t seed,
-                                   const size_t n, double x_m[], double y_m[], double z_m[])
+                                   struct dig_bed *const bed)
 {
-    const struct dig_box *const box    = &scene->box;
-    const double                d_m    = scene->material.diameter_m;
-    const double                column = (dig_scene_ground_max_m(scene) - box->z_min_m) *
-                          scene->packing.fill_factor / scene->packing.solid_fraction;
-    double       high_m[3] = { box->x_max_m - 0.5 * d_m, box->y_max_m - 0.5 * d_m,
-                               box->z_min_m + column - 0.5 * d_m };
-    struct cells cells     = {
-            .low_m  = { box->x_min_m + 0.5 * d_m, box->y_min_m + 0.5 * d_m, box->z_min_m + 0.5 * d_m },
-            .edge_m = d_m / sqrt(3.0) * (1.0 - 1e-9),
-    };
-    size_t total = 1;
-    for (int a = 0; a < 3; a++) {
-        if (!(high_m[a] > cells.low_m[a])) {
-            return DIG_EUNREACHABLE;
-        }
-        const double span_m = (high_m[a] - cells.low_m[a]) * (a == 2 ? DIG_PACKING_TALLEST : 1.0);
-        cells.count[a]      = (ptrdiff_t)(span_m / cells.edge_m) + 1;
-        total *= (size_t)cells.count[a];
+    struct pouring  p      = { .scene = scene, .obstacles = dig_obstacles_make(scene) };
+    enum dig_status status = dig_clump_shape_make(&scene->bed.clump, &p.shape);
+    if (status != DIG_OK) {
+        return status;
     }
-    cells.grain            = calloc(total, sizeof *cells.grain);
-    double *const   made   = malloc((3 * n + 1) * sizeof *made);
-    enum dig_status status = DIG_ENOMEM;
-    if (cells.grain != NULL && made != NULL) {
-        double *const position[3] = { made, made + n, made + 2 * n };
-        status                    = insert(&cells, high_m, d_m, seed, n, position);
-        if (status == DIG_OK) {
-            memcpy(x_m, position[0], n * sizeof *x_m);
-            memcpy(y_m, position[1], n * sizeof *y_m);
-            memcpy(z_m, position[2], n * sizeof *z_m);
-        }
+    p.spheres = p.shape.spheres > 0 ? p.shape.spheres : 1;
+    plan_size_classes(&p);
+    const size_t   n    = count_spheres(&p);
+    struct dig_bed made = { 0 };
+    status              = dig_bed_create(n, false, p.shape.spheres > 0, &made);
+    if (status == DIG_OK) {
+        status = make_cells(&p, n);
     }
-    free(cells.grain);
-    free(made);
-    return status;
+    if (status == DIG_OK) {
+        status = insert(&p, seed, &made);
+    }
+    free(p.cells.first);
+    free(p.cells.next);
+    if (status != DIG_OK) {
+        dig_bed_finish(&made);
+        return status;
+    }
+    *bed = made;
+    return DIG_OK;
 }

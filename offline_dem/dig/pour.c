@@ -1,6 +1,5 @@
 #include "offline_dem/dig/dig.h"
 #include "offline_dem/dig/level.h"
-#include "offline_dem/dig/mixed_packing.h"
 #include "offline_dem/dig/packing.h"
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/world/bodies.h"
@@ -27,39 +26,6 @@ static enum dig_status step_for(struct dig_world *const world, const double dura
         }
     }
     return DIG_OK;
-}
-
-// Equal spheres on an empty floor: the packing of every table of plain gravel.
-static enum dig_status insert_plain(const struct dig_scene *const scene, const uint64_t seed,
-                                    struct dig_bed *const bed)
-{
-    struct dig_bed  made   = { 0 };
-    const size_t    n      = dig_packing_grains(scene);
-    enum dig_status status = dig_bed_create(n, false, false, &made);
-    if (status == DIG_OK) {
-        status = dig_packing_insert(scene, seed, n, made.x_m, made.y_m, made.z_m);
-    }
-    if (status != DIG_OK) {
-        dig_bed_finish(&made);
-        return status;
-    }
-    for (size_t i = 0; i < n; i++) {
-        made.radius_m[i] = 0.5 * scene->material.diameter_m;
-    }
-    *bed = made;
-    return DIG_OK;
-}
-
-static enum dig_status insert(const struct dig_scene *const scene, const uint64_t seed,
-                              struct dig_bed *const bed)
-{
-    const struct dig_bed_plan *const plan = &scene->bed;
-    if (plan->sizes == 0 && plan->clump.spheres == 0 && plan->obstacles == 0 && !plan->periodic_y) {
-        return insert_plain(scene, seed, bed);
-    }
-    struct dig_clump_shape shape;
-    const enum dig_status  status = dig_clump_shape_make(&plan->clump, &shape);
-    return status == DIG_OK ? dig_mixed_packing_insert(scene, &shape, seed, bed) : status;
 }
 
 // Assigns materials by the height of the grains, or of the middles of their clumps.
@@ -170,7 +136,7 @@ enum dig_status dig_bed_pour(const struct dig_stepper *const stepper,
         return status;
     }
     struct dig_bed poured = { 0 };
-    status                = insert(scene, seed, &poured);
+    status                = dig_packing_insert(scene, seed, &poured);
     if (status != DIG_OK) {
         return dig_setup_explain(status, error);
     }

@@ -9,17 +9,23 @@
 
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
+static struct dig_bed insert(const struct dig_scene *const scene, const uint64_t seed)
+{
+    struct dig_bed bed;
+    assert_int_equal(dig_packing_insert(scene, seed, &bed), DIG_OK);
+    return bed;
+}
+
 TEST(inserted_grains_are_inside_and_apart)
 {
     const struct dig_scene scene = dem_small_scene();
-    const size_t           n     = dig_packing_grains(&scene);
-    double                 x[512], y[512], z[512];
-    assert_in_range(n, 100, 512);
+    struct dig_bed         bed   = insert(&scene, 1);
+    const double *const x = bed.x_m, *const y = bed.y_m, *const z = bed.z_m;
     // The volume poured is what fill_factor says, to a grain.
-    assert_close((double)n * GRAIN_kg / DENSITY, 0.694 * 0.06 * 0.045 * 0.03, GRAIN_kg / DENSITY);
-    assert_int_equal(dig_packing_insert(&scene, 1, n, x, y, z), DIG_OK);
+    assert_close((double)bed.grains * GRAIN_kg / DENSITY, 0.694 * 0.06 * 0.045 * 0.03,
+                 GRAIN_kg / DENSITY);
     double top_m = 0.0;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < bed.grains; i++) {
         assert_true(x[i] >= GRAIN_m && x[i] <= 0.06 - GRAIN_m);
         assert_true(fabs(y[i]) <= 0.0225 - GRAIN_m);
         assert_true(z[i] >= GRAIN_m);
@@ -29,44 +35,43 @@ TEST(inserted_grains_are_inside_and_apart)
         }
     }
     assert_true(top_m <= 0.03 * 0.694 / 0.3);
+    dig_bed_finish(&bed);
 }
 
 TEST(a_seed_names_a_packing)
 {
     const struct dig_scene scene = dem_small_scene();
-    double                 x[3][3], y[3], z[3];
-    for (uint64_t k = 0; k < 3; k++) {
-        assert_int_equal(dig_packing_insert(&scene, k == 2 ? 8 : 7, 3, x[k], y, z), DIG_OK);
+    struct dig_bed         bed[] = { insert(&scene, 7), insert(&scene, 7), insert(&scene, 8) };
+    assert_memory_equal(bed[0].x_m, bed[1].x_m, bed[0].grains * sizeof *bed[0].x_m);
+    assert_true(fabs(bed[0].x_m[0] - bed[2].x_m[0]) > 0.0);
+    for (size_t k = 0; k < 3; k++) {
+        dig_bed_finish(&bed[k]);
     }
-    assert_memory_equal(x[0], x[1], sizeof x[0]);
-    assert_true(fabs(x[0][0] - x[2][0]) > 0.0);
 }
 
 TEST(a_column_that_is_full_grows)
 {
     struct dig_scene scene       = dem_small_scene();
     scene.packing.solid_fraction = 0.45; // above what random insertion reaches
-    const size_t n               = dig_packing_grains(&scene);
-    double       x[512], y[512], z[512];
-    assert_int_equal(dig_packing_insert(&scene, 1, n, x, y, z), DIG_OK);
-    double top_m = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        top_m = fmax(top_m, z[i]);
+    struct dig_bed bed           = insert(&scene, 1);
+    double         top_m         = 0.0;
+    for (size_t i = 0; i < bed.grains; i++) {
+        top_m = fmax(top_m, bed.z_m[i]);
     }
     assert_true(top_m > 0.03 * 0.694 / 0.45 && top_m < 2.0 * 0.03 * 0.694 / 0.45);
+    dig_bed_finish(&bed);
 }
 
 TEST(what_cannot_fit_is_refused_and_nothing_written)
 {
+    struct dig_bed   bed   = { .grains = 77 };
     struct dig_scene scene = dem_small_scene();
     scene.box.y_max_m      = scene.box.y_min_m + 1.9 * GRAIN_m;
-    double x[512] = { 0.0 }, y[512] = { 0.0 }, z[512] = { 0.0 };
-    assert_int_equal(dig_packing_insert(&scene, 1, 100, x, y, z), DIG_EUNREACHABLE);
-    scene = dem_small_scene();
-    assert_int_equal(dig_packing_insert(&scene, 1, 512, x, y, z), DIG_EUNREACHABLE);
-    for (size_t i = 0; i < 512; i++) {
-        assert_true(fabs(x[i]) + fabs(y[i]) + fabs(z[i]) <= 0.0);
-    }
+    assert_int_equal(dig_packing_insert(&scene, 1, &bed), DIG_EUNREACHABLE);
+    scene                        = dem_small_scene();
+    scene.packing.solid_fraction = 0.9; // 0.45 once the column is twice as tall
+    assert_int_equal(dig_packing_insert(&scene, 1, &bed), DIG_EUNREACHABLE);
+    assert_int_equal(bed.grains, 77);
 }
 
 TEST(a_poured_bed_is_level_and_lies_on_its_floor)
@@ -74,7 +79,9 @@ TEST(a_poured_bed_is_level_and_lies_on_its_floor)
     const struct dig_scene scene = dem_small_scene();
     struct dig_bed         bed;
     assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
-    assert_in_range(bed.grains, 100, dig_packing_grains(&scene));
+    struct dig_bed inserted = insert(&scene, 3);
+    assert_in_range(bed.grains, 100, inserted.grains);
+    dig_bed_finish(&inserted);
     double *const at = calloc(3 * bed.grains, sizeof *at);
     assert_non_null(at);
     double(*const x)[3] = (double(*)[3])at;

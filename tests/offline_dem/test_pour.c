@@ -4,7 +4,7 @@
 
 #include "core/ground.h"
 #include "offline_dem/dig/dig.h"
-#include "offline_dem/dig/mixed_packing.h"
+#include "offline_dem/dig/packing.h"
 #include "offline_dem/shapes/clump.h"
 
 #include <math.h>
@@ -70,14 +70,13 @@ static double mass_of(const struct dig_bed *const bed, const double radius_m)
 
 TEST(three_sizes_are_poured_by_mass)
 {
-    struct dig_scene             scene = small_scene();
-    const struct dig_clump_shape shape = { 0 };
-    scene.bed.sizes                    = 3;
-    scene.bed.size[0]                  = (struct dig_size){ 0.006, 0.3 };
-    scene.bed.size[1]                  = (struct dig_size){ 0.0075, 0.4 };
-    scene.bed.size[2]                  = (struct dig_size){ 0.010, 0.3 };
-    struct dig_bed poured              = { 0 };
-    assert_int_equal(dig_mixed_packing_insert(&scene, &shape, 1, &poured), DIG_OK);
+    struct dig_scene scene = small_scene();
+    scene.bed.sizes        = 3;
+    scene.bed.size[0]      = (struct dig_size){ 0.006, 0.3 };
+    scene.bed.size[1]      = (struct dig_size){ 0.0075, 0.4 };
+    scene.bed.size[2]      = (struct dig_size){ 0.010, 0.3 };
+    struct dig_bed poured  = { 0 };
+    assert_int_equal(dig_packing_insert(&scene, 1, &poured), DIG_OK);
     assert_close(deepest_overlap(&poured), 0.0, 0.0);
     const double all =
         mass_of(&poured, 0.003) + mass_of(&poured, 0.00375) + mass_of(&poured, 0.005);
@@ -256,18 +255,17 @@ TEST(a_bed_that_was_dug_before_digs_differently_and_repeats)
 
 TEST(what_cannot_fit_is_refused_and_nothing_written)
 {
-    struct dig_scene             scene = small_scene();
-    const struct dig_clump_shape shape = { 0 };
-    struct dig_bed               bed   = { .grains = 77 };
-    scene.bed.sizes                    = 1;
-    scene.bed.size[0]                  = (struct dig_size){ 0.02, 1.0 };
-    scene.packing.solid_fraction       = 0.4;
-    scene.packing.fill_factor          = 1.9;
-    scene.bed.obstacles                = 1;
-    scene.bed.obstacle[0]              = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
-                                                                .centre_m = { 0.03, 0.0, 0.1 },
-                                                                .size_m   = { 0.05, 0.04, 0.4 } };
-    assert_int_equal(dig_mixed_packing_insert(&scene, &shape, 1, &bed), DIG_EUNREACHABLE);
+    struct dig_scene scene       = small_scene();
+    struct dig_bed   bed         = { .grains = 77 };
+    scene.bed.sizes              = 1;
+    scene.bed.size[0]            = (struct dig_size){ 0.02, 1.0 };
+    scene.packing.solid_fraction = 0.4;
+    scene.packing.fill_factor    = 1.9;
+    scene.bed.obstacles          = 1;
+    scene.bed.obstacle[0]        = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
+                                                          .centre_m = { 0.03, 0.0, 0.1 },
+                                                          .size_m   = { 0.05, 0.04, 0.4 } };
+    assert_int_equal(dig_packing_insert(&scene, 1, &bed), DIG_EUNREACHABLE);
     assert_int_equal(bed.grains, 77);
 }
 
