@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 enum { X, Y, Z, RADIUS, MATERIAL, CLUMP, COLUMNS };
 
@@ -56,35 +55,13 @@ static enum dig_status check(const struct dig_csv *const csv, const char *const 
     return DIG_OK;
 }
 
-void dig_bed_columns_finish(struct dig_bed_columns *const bed)
+static enum dig_status take(const struct dig_csv *const csv, struct dig_bed *const bed)
 {
-    if (bed != NULL) {
-        free(bed->x_m);
-        free(bed->y_m);
-        free(bed->z_m);
-        free(bed->radius_m);
-        free(bed->material);
-        free(bed->clump);
-        *bed = (struct dig_bed_columns){ .grains = 0 };
-    }
-}
-
-static enum dig_status take(const struct dig_csv *const csv, struct dig_bed_columns *const bed)
-{
-    const size_t           n    = csv->rows;
-    struct dig_bed_columns made = {
-        .grains   = n,
-        .x_m      = malloc(n * sizeof *made.x_m),
-        .y_m      = malloc(n * sizeof *made.y_m),
-        .z_m      = malloc(n * sizeof *made.z_m),
-        .radius_m = malloc(n * sizeof *made.radius_m),
-        .material = has(csv, MATERIAL) ? malloc(n * sizeof *made.material) : NULL,
-        .clump    = has(csv, CLUMP) ? malloc(n * sizeof *made.clump) : NULL,
-    };
-    if (made.x_m == NULL || made.y_m == NULL || made.z_m == NULL || made.radius_m == NULL ||
-        (has(csv, MATERIAL) && made.material == NULL) || (has(csv, CLUMP) && made.clump == NULL)) {
-        dig_bed_columns_finish(&made);
-        return DIG_ENOMEM;
+    const size_t          n      = csv->rows;
+    struct dig_bed        made   = { 0 };
+    const enum dig_status status = dig_bed_create(n, has(csv, MATERIAL), has(csv, CLUMP), &made);
+    if (status != DIG_OK) {
+        return status;
     }
     for (size_t i = 0; i < n; i++) {
         made.x_m[i]      = at(csv, i, X);
@@ -102,7 +79,7 @@ static enum dig_status take(const struct dig_csv *const csv, struct dig_bed_colu
     return DIG_OK;
 }
 
-enum dig_status dig_bed_read(const char *const path, struct dig_bed_columns *const bed,
+enum dig_status dig_bed_read(const char *const path, struct dig_bed *const bed,
                              struct dig_error *const error)
 {
     struct dig_csv  csv;
@@ -118,7 +95,7 @@ enum dig_status dig_bed_read(const char *const path, struct dig_bed_columns *con
     return status;
 }
 
-enum dig_status dig_bed_write(const char *const path, const struct dig_bed_columns *const bed,
+enum dig_status dig_bed_write(const char *const path, const struct dig_bed *const bed,
                               struct dig_error *const error)
 {
     struct dig_out        out;

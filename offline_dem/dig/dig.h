@@ -4,12 +4,12 @@
 #ifndef DIG_OFFLINE_DEM_DIG_DIG_H
 #define DIG_OFFLINE_DEM_DIG_DIG_H
 
+#include "core/bed.h"
 #include "core/curve.h"
 #include "core/error.h"
 #include "core/recording.h"
 #include "core/scene.h"
 #include "core/status.h"
-#include "offline_dem/kernel/bed.h"
 
 #include <stdbool.h>
 #include <stddef.h>

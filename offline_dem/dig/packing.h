@@ -3,9 +3,9 @@
 #ifndef DIG_OFFLINE_DEM_DIG_PACKING_H
 #define DIG_OFFLINE_DEM_DIG_PACKING_H
 
+#include "core/bed.h"
 #include "core/scene.h"
 #include "core/status.h"
-#include "offline_dem/kernel/bed.h"
 
 #include <stdint.h>
 

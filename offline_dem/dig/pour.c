@@ -69,11 +69,59 @@ static enum dig_status make_world(struct pour *const p, const struct dig_bed *co
     return status == DIG_OK ? dig_setup_stepper(&p->stepper, &p->world, error) : status;
 }
 
+struct numbered {
+    uint32_t id, place;
+};
+
+static int by_id(const void *const a, const void *const b)
+{
+    const uint32_t x = ((const struct numbered *)a)->id;
+    const uint32_t y = ((const struct numbered *)b)->id;
+    return (x > y) - (x < y);
+}
+
+// Copies the grains' positions; material[type] is the material of each type, NULL: all gravel.
+// Spheres of a clump keep their order.
+static enum dig_status copy_grains(const struct dig_grains *const grains, const size_t material[],
+                                   struct dig_bed *const bed)
+{
+    const size_t           n     = grains->n;
+    struct numbered *const order = malloc((n + 1) * sizeof *order);
+    struct dig_bed         made  = { 0 };
+    if (order == NULL ||
+        dig_bed_create(n, material != NULL, grains->clump != NULL, &made) != DIG_OK) {
+        free(order);
+        return DIG_ENOMEM;
+    }
+    for (size_t i = 0; i < n; i++) {
+        order[i] = (struct numbered){ grains->id[i], (uint32_t)i };
+    }
+    if (grains->clump != NULL) {
+        qsort(order, n, sizeof *order, by_id);
+    }
+    for (size_t k = 0; k < n; k++) {
+        const size_t i   = order[k].place;
+        made.x_m[k]      = grains->motion[i].x_m[0];
+        made.y_m[k]      = grains->motion[i].x_m[1];
+        made.z_m[k]      = grains->motion[i].x_m[2];
+        made.radius_m[k] = grains->type[grains->type_of[i]].radius_m;
+        if (material != NULL) {
+            made.material[k] = (uint8_t)material[grains->type_of[i]];
+        }
+        if (grains->clump != NULL) {
+            made.clump[k] = grains->clump[i];
+        }
+    }
+    free(order);
+    *bed = made;
+    return DIG_OK;
+}
+
 static enum dig_status copy_bed(struct pour *const p, const size_t material[],
                                 struct dig_bed *const bed)
 {
     enum dig_status status = dig_world_sync_motion(&p->world);
-    status = status == DIG_OK ? dig_bed_from_grains(&p->world.grains, material, bed) : status;
+    status = status == DIG_OK ? copy_grains(&p->world.grains, material, bed) : status;
     if (status == DIG_OK && p->world.bodies != NULL) {
         dig_obstacles_save_poses(&p->world.bodies->obstacles, bed);
     }

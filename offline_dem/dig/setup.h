@@ -3,11 +3,11 @@
 #ifndef DIG_OFFLINE_DEM_DIG_SETUP_H
 #define DIG_OFFLINE_DEM_DIG_SETUP_H
 
+#include "core/bed.h"
 #include "core/error.h"
 #include "core/recording.h"
 #include "core/scene.h"
 #include "offline_dem/dig/dig.h"
-#include "offline_dem/kernel/bed.h"
 #include "offline_dem/world/grain_types.h"
 #include "offline_dem/world/ode_scene.h"
 #include "offline_dem/world/world.h"

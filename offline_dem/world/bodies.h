@@ -4,9 +4,9 @@
 #ifndef DIG_OFFLINE_DEM_WORLD_BODIES_H
 #define DIG_OFFLINE_DEM_WORLD_BODIES_H
 
+#include "core/bed.h"
 #include "core/scene.h"
 #include "core/status.h"
-#include "offline_dem/kernel/bed.h"
 #include "offline_dem/kernel/clump_body.h"
 #include "offline_dem/world/obstacles.h"
 #include "offline_dem/world/ode_rocks.h"

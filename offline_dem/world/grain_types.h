@@ -4,9 +4,9 @@
 #ifndef DIG_OFFLINE_DEM_WORLD_GRAIN_TYPES_H
 #define DIG_OFFLINE_DEM_WORLD_GRAIN_TYPES_H
 
+#include "core/bed.h"
 #include "core/error.h"
 #include "core/scene.h"
-#include "offline_dem/kernel/bed.h"
 #include "offline_dem/law/law.h"
 #include "offline_dem/shapes/clump.h"
 #include "offline_dem/world/world.h"

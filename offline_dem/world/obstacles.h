@@ -3,8 +3,8 @@
 #ifndef DIG_OFFLINE_DEM_WORLD_OBSTACLES_H
 #define DIG_OFFLINE_DEM_WORLD_OBSTACLES_H
 
+#include "core/bed.h"
 #include "core/scene.h"
-#include "offline_dem/kernel/bed.h"
 #include "offline_dem/law/rigid.h"
 #include "offline_dem/shapes/rock_surface.h"
 #include "offline_dem/world/world.h"

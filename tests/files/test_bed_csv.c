@@ -7,10 +7,12 @@
 TEST(a_bed_is_read_back_bit_by_bit)
 {
     double x[] = { 0.1, 1.0 / 3 }, y[] = { -0.05, 1e-17 }, z[] = { 0.03, 2.0 / 7 },
-           radius[]                      = { 0.00375, 0.003 };
-    const struct dig_bed_columns written = { 2, x, y, z, radius, NULL, NULL };
-    struct dig_bed_columns       read    = { 0 };
-    const char *const            path    = scratch_path("bed.csv");
+           radius[]              = { 0.00375, 0.003 };
+    const struct dig_bed written = {
+        .grains = 2, .x_m = x, .y_m = y, .z_m = z, .radius_m = radius
+    };
+    struct dig_bed    read = { 0 };
+    const char *const path = scratch_path("bed.csv");
     assert_int_equal(dig_bed_write(path, &written, NULL), DIG_OK);
     assert_int_equal(dig_bed_read(path, &read, NULL), DIG_OK);
     assert_int_equal(read.grains, 2);
@@ -20,7 +22,7 @@ TEST(a_bed_is_read_back_bit_by_bit)
     assert_memory_equal(read.radius_m, radius, sizeof radius);
     assert_null(read.material);
     assert_null(read.clump);
-    dig_bed_columns_finish(&read);
+    dig_bed_finish(&read);
 }
 
 TEST(materials_and_clumps_are_kept)
@@ -29,11 +31,17 @@ TEST(materials_and_clumps_are_kept)
     uint8_t  material[] = { 0, 255, 3 };
     uint32_t clump[]    = { 1, UINT32_MAX, 7 };
     for (int which = 1; which <= 3; which++) {
-        const struct dig_bed_columns written = {
-            3, x, x, x, radius, (which & 1) != 0 ? material : NULL, (which & 2) != 0 ? clump : NULL
+        const struct dig_bed written = {
+            .grains   = 3,
+            .x_m      = x,
+            .y_m      = x,
+            .z_m      = x,
+            .radius_m = radius,
+            .material = (which & 1) != 0 ? material : NULL,
+            .clump    = (which & 2) != 0 ? clump : NULL,
         };
-        struct dig_bed_columns read = { 0 };
-        const char *const      path = scratch_path("bed.csv");
+        struct dig_bed    read = { 0 };
+        const char *const path = scratch_path("bed.csv");
         assert_int_equal(dig_bed_write(path, &written, NULL), DIG_OK);
         assert_int_equal(dig_bed_read(path, &read, NULL), DIG_OK);
         assert_int_equal(read.material != NULL, (which & 1) != 0);
@@ -44,16 +52,16 @@ TEST(materials_and_clumps_are_kept)
         if (read.clump != NULL) {
             assert_memory_equal(read.clump, clump, sizeof clump);
         }
-        dig_bed_columns_finish(&read);
+        dig_bed_finish(&read);
     }
 }
 
 TEST(the_bed_of_the_formats_loads)
 {
-    struct dig_bed_columns read = { 0 };
+    struct dig_bed read = { 0 };
     assert_int_equal(dig_bed_read("tests/data/formats/bed.csv", &read, NULL), DIG_OK);
     assert_int_equal(read.grains, 3);
-    dig_bed_columns_finish(&read);
+    dig_bed_finish(&read);
 }
 
 TEST(defects_are_told_and_nothing_is_written)
@@ -70,16 +78,16 @@ TEST(defects_are_told_and_nothing_is_written)
         { "x_m,y_m,z_m,radius_m,clump\n0,0,0,1,\n", ":2: column clump: \"\"" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        struct dig_error       error = { "" };
-        struct dig_bed_columns read  = { .grains = 42 };
+        struct dig_error error = { "" };
+        struct dig_bed   read  = { .grains = 42 };
         assert_int_equal(dig_bed_read(scratch_write("bad.csv", bad[i][0]), &read, &error),
                          DIG_EINVAL);
         assert_contains(error.text, bad[i][1]);
         assert_int_equal(read.grains, 42);
         assert_null(read.x_m);
     }
-    struct dig_error       error = { "" };
-    struct dig_bed_columns read  = { .grains = 42 };
+    struct dig_error error = { "" };
+    struct dig_bed   read  = { .grains = 42 };
     assert_int_equal(dig_bed_read(scratch_path("absent.csv"), &read, &error), DIG_EIO);
     assert_contains(error.text, "absent.csv: No such file");
     assert_int_equal(read.grains, 42);

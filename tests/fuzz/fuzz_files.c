@@ -78,9 +78,9 @@ static enum dig_status read_machine_recording(const char *const path, struct dig
 
 static enum dig_status read_bed(const char *const path, struct dig_error *const e)
 {
-    struct dig_bed_columns bed    = { 0 };
-    const enum dig_status  status = dig_bed_read(path, &bed, e);
-    dig_bed_columns_finish(&bed);
+    struct dig_bed        bed    = { 0 };
+    const enum dig_status status = dig_bed_read(path, &bed, e);
+    dig_bed_finish(&bed);
     return status;
 }
 

@@ -1,6 +1,7 @@
 // digtable dig and digtable generate.
 
 #include "core/text.h"
+#include "files/bed_csv.h"
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig/checked_pour.h"
@@ -82,7 +83,7 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
     struct dig_recording       recording = { 0 };
     enum dig_status            status    = DIG_OK;
     if (a->save_bed != NULL) {
-        status = dig_cli_bed_write(a->save_bed, bed, error);
+        status = dig_bed_write(a->save_bed, bed, error);
     }
     if (status == DIG_OK) {
         status = engine.dig(&engine.stepper, scene, gravel, bed, trajectory, a->vtk, &progress,

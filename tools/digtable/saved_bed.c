@@ -23,18 +23,11 @@ enum dig_status dig_cli_bed_read(const char *const path, const struct dig_scene 
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_bed_columns file;
-    status = dig_bed_read(path, &file, error);
+    struct dig_bed read;
+    status = dig_bed_read(path, &read, error);
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_bed read = { .grains   = file.grains,
-                            .x_m      = file.x_m,
-                            .y_m      = file.y_m,
-                            .z_m      = file.z_m,
-                            .radius_m = file.radius_m,
-                            .material = file.material,
-                            .clump    = file.clump };
     if (scene->bed.layers > 0 && read.material == NULL) {
         dig_bed_finish(&read);
         return dig_error_set(
@@ -43,17 +36,4 @@ enum dig_status dig_cli_bed_read(const char *const path, const struct dig_scene 
     }
     *bed = read;
     return DIG_OK;
-}
-
-enum dig_status dig_cli_bed_write(const char *const path, const struct dig_bed *const bed,
-                                  struct dig_error *const error)
-{
-    const struct dig_bed_columns file = { .grains   = bed->grains,
-                                          .x_m      = bed->x_m,
-                                          .y_m      = bed->y_m,
-                                          .z_m      = bed->z_m,
-                                          .radius_m = bed->radius_m,
-                                          .material = bed->material,
-                                          .clump    = bed->clump };
-    return dig_bed_write(path, &file, error);
 }

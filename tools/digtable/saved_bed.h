@@ -3,9 +3,9 @@
 #ifndef DIG_TOOLS_DIGTABLE_SAVED_BED_H
 #define DIG_TOOLS_DIGTABLE_SAVED_BED_H
 
+#include "core/bed.h"
 #include "core/error.h"
 #include "core/scene.h"
-#include "offline_dem/kernel/bed.h"
 
 /// DIG_EINVAL for a scene whose beds a file cannot hold: one with movable rocks.
 DIG_MUST_CHECK enum dig_status dig_cli_bed_fits_file(const struct dig_scene *scene,
@@ -16,8 +16,5 @@ DIG_MUST_CHECK enum dig_status dig_cli_bed_fits_file(const struct dig_scene *sce
 /// only.
 DIG_MUST_CHECK enum dig_status dig_cli_bed_read(const char *path, const struct dig_scene *scene,
                                                 struct dig_bed *bed, struct dig_error *error);
-
-DIG_MUST_CHECK enum dig_status dig_cli_bed_write(const char *path, const struct dig_bed *bed,
-                                                 struct dig_error *error);
 
 #endif // DIG_TOOLS_DIGTABLE_SAVED_BED_H

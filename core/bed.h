@@ -1,13 +1,13 @@
 // A settled bed: the result of pouring and the start of a dig. One index a grain, or a sphere of a
 // clump.
 
-#ifndef DIG_OFFLINE_DEM_KERNEL_BED_H
-#define DIG_OFFLINE_DEM_KERNEL_BED_H
+#ifndef DIG_CORE_BED_H
+#define DIG_CORE_BED_H
 
 #include "core/scene.h"
 #include "core/status.h"
-#include "offline_dem/kernel/grains.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -31,12 +31,7 @@ struct dig_bed {
 DIG_MUST_CHECK enum dig_status dig_bed_create(size_t grains, bool materials, bool clumps,
                                               struct dig_bed *bed);
 
-/// Copies the grains' positions; material[type] is the material of each type, NULL: all gravel.
-/// Spheres of a clump keep their order. DIG_ENOMEM leaves *bed as it was.
-DIG_MUST_CHECK enum dig_status dig_bed_from_grains(const struct dig_grains *grains,
-                                                   const size_t material[], struct dig_bed *bed);
-
 /// NULL and a zeroed bed are allowed.
 void dig_bed_finish(struct dig_bed *bed);
 
-#endif // DIG_OFFLINE_DEM_KERNEL_BED_H
+#endif // DIG_CORE_BED_H
