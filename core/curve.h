@@ -122,7 +122,7 @@ struct dig_table_step {
     double lightest_kgpm3; // that gravel
 };
 
-struct dig_approach_set; // core/approach_set.h
+struct dig_entry_set; // core/entry_set.h
 
 /// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
 /// that lacks a trajectory has packings 0 there.
@@ -149,7 +149,7 @@ struct dig_curve_set {
     // Of each trajectory, [trajectories]; NULL: not known of these curves.
     struct dig_covariance *covariance;
     // The same digs deeper or with the bucket turned; NULL: the table holds none.
-    struct dig_approach_set *approaches;
+    struct dig_entry_set *approaches;
 };
 
 /// The index of the trajectory of this name, -1 where the set has none.

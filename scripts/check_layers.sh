@@ -22,7 +22,7 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # is its roof. Behind each the headers that other folders may include, and after | those that only the rooms above
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
-core                   approach approach_set bed bed_plan command_line contact curve did_you_mean effect effect_set
+core                   approach bed bed_plan command_line contact curve did_you_mean effect entry_set
                        error geometry ground help linkage log_normal machine model name part recording regular
                        sample scene sha256 shell similar sort status table_step text units vec2
 files/text             whole | csv
@@ -41,7 +41,7 @@ estimator/effects      effect template
 estimator/match        depth gravel_match match pool prefilter | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
 tables/schema          | canonical_scene schema seal
-tables                 derive export listed load load_effects merge queue scene store
+tables                 derive export listed load merge queue scene store
 offline_dem/law        | both law law_general period random rigid wall
 offline_dem/shapes     | bucket_surface clump rock_surface tool
 offline_dem/kernel     | clump_body contacts crew grains kernel neighbour

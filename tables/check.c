@@ -38,15 +38,15 @@ struct scratch {
     struct dig_curve    curve;
 };
 
-static enum dig_status check_entry(struct dig_store *const         store,
-                                   const struct dig_grounds *const all, const size_t ground,
+static enum dig_status check_entry(struct dig_store *const           store,
+                                   const struct dig_entry_set *const all, const size_t ground,
                                    const size_t trajectory, struct scratch *const scratch,
                                    struct dig_error *const error)
 {
-    const size_t                   at = ground * all->trajectories + trajectory;
-    const struct dig_ground *const g  = &all->ground[ground];
-    const enum dig_status          status =
-        dig_entry_derive(store, g->id, trajectory, &scratch->ensemble, error);
+    const size_t                  at = ground * all->trajectories + trajectory;
+    const struct dig_entry *const g  = &all->entry[ground];
+    const enum dig_status         status =
+        dig_entry_derive(store, g->ground, trajectory, &scratch->ensemble, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -58,7 +58,8 @@ static enum dig_status check_entry(struct dig_store *const         store,
                       (runs == 0 || agree(&stored->mean[0][0], &actual->mean[0][0])) &&
                       (runs < 2 || agree(&stored->sd[0][0], &actual->sd[0][0]));
     if (!same) {
-        char how[DIG_APPROACH_TEXT_SIZE];
+        const bool varied = g->effect != DIG_EFFECTS;
+        char       how[DIG_APPROACH_TEXT_SIZE];
         dig_approach_text(&g->approach, how);
         return dig_error_set(
             error, DIG_EINVAL,
@@ -66,7 +67,7 @@ static enum dig_status check_entry(struct dig_store *const         store,
             "packings, differs from its %zu runs, expected their mean and spread; digtable "
             "merge into a new table makes them anew",
             store->path, g->gravel.value[0], g->gravel.value[1], g->gravel.value[2],
-            g->effect[0] != '\0' ? " with " : "", g->effect,
+            varied ? " with " : "", varied ? dig_effect_name(g->effect) : "",
             store->head.trajectory[trajectory].name, how, all->packings[at], runs);
     }
     return DIG_OK;
@@ -75,23 +76,23 @@ static enum dig_status check_entry(struct dig_store *const         store,
 // Entries are compared with those of their kind: plain, with an effect, or dug another way.
 enum kind { KIND_PLAIN, KIND_VARIED, KIND_APPROACHED, KINDS };
 
-static enum kind kind_of(const struct dig_grounds *const all, const size_t ground)
+static enum kind kind_of(const struct dig_entry_set *const all, const size_t ground)
 {
-    if (all->ground[ground].effect[0] != '\0') {
+    if (all->entry[ground].effect != DIG_EFFECTS) {
         return KIND_VARIED;
     }
-    return dig_approach_is_plain(&all->ground[ground].approach) ? KIND_PLAIN : KIND_APPROACHED;
+    return dig_approach_is_plain(&all->entry[ground].approach) ? KIND_PLAIN : KIND_APPROACHED;
 }
 
 // The number of packings that most entries of the kind have; of two as frequent, the larger.
-static int usual_packings(const struct dig_grounds *const all, const enum kind kind)
+static int usual_packings(const struct dig_entry_set *const all, const enum kind kind)
 {
     int    usual = 0;
     size_t best  = 0;
-    for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
+    for (size_t i = 0; i < all->entries * all->trajectories; i++) {
         size_t    times = 0;
         const int n     = all->packings[i];
-        for (size_t k = 0; k < all->grounds * all->trajectories; k++) {
+        for (size_t k = 0; k < all->entries * all->trajectories; k++) {
             const bool same = kind_of(all, k / all->trajectories) == kind;
             times += same && all->packings[k] == n ? 1 : 0;
         }
@@ -103,26 +104,26 @@ static int usual_packings(const struct dig_grounds *const all, const enum kind k
     return usual;
 }
 
-static void count_entries(const struct dig_grounds *const all,
-                          struct dig_store_report *const  report)
+static void count_entries(const struct dig_entry_set *const all,
+                          struct dig_store_report *const    report)
 {
     bool used[KINDS][DIG_TRAJECTORY_MAX] = { { false } };
     int  usual[KINDS];
     for (int kind = 0; kind < KINDS; kind++) {
         usual[kind] = usual_packings(all, (enum kind)kind);
     }
-    for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
+    for (size_t i = 0; i < all->entries * all->trajectories; i++) {
         report->entries += all->packings[i] > 0 ? 1 : 0;
         report->runs += (size_t)all->packings[i];
         used[kind_of(all, i / all->trajectories)][i % all->trajectories] |= all->packings[i] > 0;
     }
     // A trajectory no ground was dug with is not missing: the grid did not ask for it.
-    for (size_t i = 0; i < all->grounds * all->trajectories; i++) {
+    for (size_t i = 0; i < all->entries * all->trajectories; i++) {
         const enum kind kind = kind_of(all, i / all->trajectories);
         report->incomplete +=
             used[kind][i % all->trajectories] && all->packings[i] < usual[kind] ? 1 : 0;
     }
-    for (size_t g = 0; g < all->grounds; g++) {
+    for (size_t g = 0; g < all->entries; g++) {
         const enum kind kind = kind_of(all, g);
         report->points += kind == KIND_PLAIN ? 1 : 0;
         report->effects += kind == KIND_VARIED ? 1 : 0;
@@ -161,7 +162,7 @@ static enum dig_status check_all(struct dig_store *const        store,
                                  struct dig_store_report *const report,
                                  struct dig_error *const        error)
 {
-    struct dig_grounds    all = { .grounds = 0 };
+    struct dig_entry_set *all = NULL;
     struct dig_curve_set *set = NULL;
     enum dig_status       status =
         dig_grounds_load(store->db, store->path, &store->head, DIG_GROUNDS_ALL, &all, error);
@@ -172,10 +173,10 @@ static enum dig_status check_all(struct dig_store *const        store,
     if (status == DIG_OK && scratch == NULL) {
         status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
     }
-    for (size_t i = 0; status == DIG_OK && scratch != NULL && i < all.grounds * all.trajectories;
+    for (size_t i = 0; status == DIG_OK && scratch != NULL && i < all->entries * all->trajectories;
          i++) {
         status =
-            check_entry(store, &all, i / all.trajectories, i % all.trajectories, scratch, error);
+            check_entry(store, all, i / all->trajectories, i % all->trajectories, scratch, error);
     }
     struct dig_store_report made = { .entries = 0 };
     if (status == DIG_OK) {
@@ -183,13 +184,13 @@ static enum dig_status check_all(struct dig_store *const        store,
     }
     if (status == DIG_OK && set != NULL) {
         made.holes = count_holes(set);
-        made.step  = dig_grounds_step(&all, &store->head);
-        count_entries(&all, &made);
+        made.step  = dig_grounds_step(all, &store->head);
+        count_entries(all, &made);
         *report = made;
     }
     free(scratch);
     dig_curve_set_destroy(set);
-    dig_grounds_finish(&all);
+    dig_entry_set_destroy(all);
     return status;
 }
 

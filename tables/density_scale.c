@@ -1,37 +1,38 @@
 #include "tables/density_scale.h"
 
+#include "tables/load.h"
+
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 // Of gravel at 2500 kg/m3: 1500 to 4000.
 static const double times[] = { 0.6, 1.0, 1.6 };
 
 enum { COPIES = sizeof times / sizeof times[0] };
 
-static bool is_of_one_density(const struct dig_grounds *const g)
+static bool is_of_one_density(const struct dig_entry_set *const g)
 {
     bool same = true;
-    for (size_t i = 1; i < g->grounds; i++) {
-        same = same && fabs(g->ground[i].gravel.value[DIG_AXIS_DENSITY_kgpm3] -
-                            g->ground[0].gravel.value[DIG_AXIS_DENSITY_kgpm3]) <= 0.0;
+    for (size_t i = 1; i < g->entries; i++) {
+        same = same && fabs(g->entry[i].gravel.value[DIG_AXIS_DENSITY_kgpm3] -
+                            g->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3]) <= 0.0;
     }
     return same;
 }
 
 // Whether two grounds are of one gravel, dug in other ways.
-static bool is_of_one_gravel(const struct dig_ground *const a, const struct dig_ground *const b)
+static bool is_of_one_gravel(const struct dig_entry *const a, const struct dig_entry *const b)
 {
     return fabs(a->gravel.value[DIG_AXIS_FRICTION] - b->gravel.value[DIG_AXIS_FRICTION]) <= 0.0 &&
            fabs(a->gravel.value[DIG_AXIS_ROLLING] - b->gravel.value[DIG_AXIS_ROLLING]) <= 0.0;
 }
 
-static void copy(const struct dig_grounds *const from, const size_t i, const double factor,
-                 struct dig_grounds *const to, const size_t at)
+static void copy(const struct dig_entry_set *const from, const size_t i, const double factor,
+                 struct dig_entry_set *const to, const size_t at)
 {
     const size_t each = from->trajectories;
-    to->ground[at]    = from->ground[i];
-    to->ground[at].gravel.value[DIG_AXIS_DENSITY_kgpm3] *= factor;
+    to->entry[at]     = from->entry[i];
+    to->entry[at].gravel.value[DIG_AXIS_DENSITY_kgpm3] *= factor;
     for (size_t t = 0; t < each; t++) {
         const struct dig_curve *const dug    = &from->curve[i * each + t];
         struct dig_curve *const       scaled = &to->curve[at * each + t];
@@ -47,37 +48,32 @@ static void copy(const struct dig_grounds *const from, const size_t i, const dou
 
 enum dig_status dig_grounds_spread_density(const struct dig_table_head *const head,
                                            const char *const                  path,
-                                           struct dig_grounds *const grounds, size_t *const copies,
-                                           struct dig_error *const error)
+                                           struct dig_entry_set **const       grounds,
+                                           size_t *const copies, struct dig_error *const error)
 {
     assert(head != NULL && grounds != NULL && copies != NULL);
-    *copies = 1;
-    if (!head->density_scales || grounds->grounds == 0 || !is_of_one_density(grounds)) {
+    *copies                               = 1;
+    const struct dig_entry_set *const dug = *grounds;
+    if (!head->density_scales || dug->entries == 0 || !is_of_one_density(dug)) {
         return DIG_OK;
     }
-    const size_t       each = grounds->trajectories;
-    const size_t       n    = COPIES * grounds->grounds;
-    struct dig_grounds made = { n, each, calloc(n, sizeof *made.ground),
-                                calloc(n * each, sizeof *made.packings),
-                                calloc(n * each, sizeof *made.curve) };
-    if (made.ground == NULL || made.packings == NULL || made.curve == NULL) {
-        dig_grounds_finish(&made);
+    struct dig_entry_set *const made = dig_grounds_create(head, COPIES * dug->entries);
+    if (made == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
     }
     size_t at   = 0;
     size_t next = 0;
-    for (size_t first = 0; first < grounds->grounds; first = next) {
-        while (next < grounds->grounds &&
-               is_of_one_gravel(&grounds->ground[first], &grounds->ground[next])) {
+    for (size_t first = 0; first < dug->entries; first = next) {
+        while (next < dug->entries && is_of_one_gravel(&dug->entry[first], &dug->entry[next])) {
             next++;
         }
         for (size_t c = 0; c < COPIES; c++) {
             for (size_t i = first; i < next; i++) {
-                copy(grounds, i, times[c], &made, at++);
+                copy(dug, i, times[c], made, at++);
             }
         }
     }
-    dig_grounds_finish(grounds);
+    dig_entry_set_destroy(*grounds);
     *grounds = made;
     *copies  = COPIES;
     return DIG_OK;

@@ -11,7 +11,7 @@
 /// how many.
 DIG_MUST_CHECK enum dig_status dig_grounds_spread_density(const struct dig_table_head *head,
                                                           const char                  *path,
-                                                          struct dig_grounds          *grounds,
+                                                          struct dig_entry_set       **grounds,
                                                           size_t *copies, struct dig_error *error);
 
 #endif // DIG_TABLES_DENSITY_SCALE_H

@@ -71,14 +71,14 @@ void dig_export_curves(const struct dig_curve_set *const set, FILE *const file)
     }
 }
 
-void dig_export_effects(const struct dig_curve_set *const  set,
-                        const struct dig_effect_set *const effects, FILE *const file)
+void dig_export_effects(const struct dig_curve_set *const set,
+                        const struct dig_entry_set *const effects, FILE *const file)
 {
     (void)fprintf(
         file,
         "effect,magnitude,friction,rolling,density_kgpm3,trajectory,packings," POINT_COLUMNS "\n");
     for (size_t e = 0; e < effects->entries; e++) {
-        const struct dig_effect_entry *const entry = &effects->entry[e];
+        const struct dig_entry *const entry = &effects->entry[e];
         for (size_t t = 0; t < effects->trajectories; t++) {
             const size_t at = e * effects->trajectories + t;
             for (size_t k = 0; effects->packings[at] > 0 && k < DIG_CURVE_POINTS; k++) {
@@ -144,8 +144,8 @@ static const int *packings_of(const struct dig_curve_set *const set, const size_
                : set->approaches->packings + (entry - set->entries) * set->trajectories;
 }
 
-void dig_export_list(const struct dig_curve_set *const  set,
-                     const struct dig_effect_set *const effects, FILE *const file)
+void dig_export_list(const struct dig_curve_set *const set,
+                     const struct dig_entry_set *const effects, FILE *const file)
 {
     (void)fprintf(file, "scene %s %.12s  bucket %g m wide, tooth at %g m  E %g Pa\n",
                   set->scene_name, set->scene_hash, set->bucket_width_m, set->tooth_m,
@@ -166,8 +166,8 @@ void dig_export_list(const struct dig_curve_set *const  set,
         (void)fprintf(file, "%s%s\n", how[0] != '\0' ? "  " : "", how[0] != '\0' ? how + 2 : "");
     }
     for (size_t e = 0; e < effects->entries; e++) {
-        const struct dig_effect_entry *const x = &effects->entry[e];
-        const double *const                  v = x->gravel.value;
+        const struct dig_entry *const x = &effects->entry[e];
+        const double *const           v = x->gravel.value;
         (void)fprintf(file, "%5s  %8g  %8g  %8g ", "", v[DIG_AXIS_FRICTION], v[DIG_AXIS_ROLLING],
                       v[DIG_AXIS_DENSITY_kgpm3]);
         put_packings(set->trajectories, effects->packings + e * set->trajectories, file);
@@ -212,8 +212,8 @@ static void put_json_packings(const struct dig_curve_set *const set, const int p
     (void)fputs("}}", file);
 }
 
-void dig_export_list_json(const struct dig_curve_set *const  set,
-                          const struct dig_effect_set *const effects, FILE *const file)
+void dig_export_list_json(const struct dig_curve_set *const set,
+                          const struct dig_entry_set *const effects, FILE *const file)
 {
     (void)fputc('{', file);
     put_json_scene(set, file);

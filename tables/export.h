@@ -6,7 +6,7 @@
 #define DIG_TABLES_EXPORT_H
 
 #include "core/curve.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "core/error.h"
 #include "tables/store.h"
 
@@ -21,13 +21,13 @@ DIG_MUST_CHECK enum dig_status dig_export_runs(struct dig_store *store, FILE *fi
 
 /// The entries, numbered, and their packings, as a text table or as JSON. Either may have no
 /// entries.
-void dig_export_list(const struct dig_curve_set *set, const struct dig_effect_set *effects,
+void dig_export_list(const struct dig_curve_set *set, const struct dig_entry_set *effects,
                      FILE *file);
-void dig_export_list_json(const struct dig_curve_set *set, const struct dig_effect_set *effects,
+void dig_export_list_json(const struct dig_curve_set *set, const struct dig_entry_set *effects,
                           FILE *file);
 
 /// As dig_export_curves(), of what was dug with an effect; set names the trajectories.
-void dig_export_effects(const struct dig_curve_set *set, const struct dig_effect_set *effects,
+void dig_export_effects(const struct dig_curve_set *set, const struct dig_entry_set *effects,
                         FILE *file);
 
 /// One curve of an entry, by its number in the list (tables/listed.h): CSV, JSON, or drawn with

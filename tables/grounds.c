@@ -3,6 +3,7 @@
 #include "core/effect.h"
 #include "core/table_step.h"
 #include "tables/derive.h"
+#include "tables/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,12 +24,18 @@
 
 #define PLAINLY "depth = 1 AND attack_rad = 0"
 
+// An effect's place among those of core/effect.h; 0: none of them.
+#define LISTED(id, name) #name ","
+#define EFFECT_PLACE                                                                               \
+    "instr('," DIG_EFFECTS_OF_MACHINE(LISTED)                                                      \
+        DIG_EFFECTS_OF_SOIL(LISTED) "unlisted,', ',' || effect || ',')"
+
 struct loader {
-    const char         *path;
-    sqlite3            *db;
-    struct dig_error   *error;
-    const char         *where;
-    struct dig_grounds *into;
+    const char           *path;
+    sqlite3              *db;
+    struct dig_error     *error;
+    const char           *where;
+    struct dig_entry_set *into;
 };
 
 static const char *where_of(const enum dig_grounds_kind kind)
@@ -46,7 +53,7 @@ static enum dig_status prepare(const struct loader *const l, const char *const c
                                const char *const from, const char *const order,
                                sqlite3_stmt **const s)
 {
-    char sql[400];
+    char sql[800];
     (void)snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE %s %s", columns, from, l->where,
                    order);
     return dig_sql_prepare(l->db, l->path, sql, s, l->error);
@@ -70,46 +77,56 @@ static enum dig_status count_rows(const struct loader *const l, size_t *const ro
     return status;
 }
 
-static enum dig_status allocate(const struct loader *const l)
+struct dig_entry_set *dig_grounds_create(const struct dig_table_head *const head,
+                                         const size_t                       entries)
 {
-    struct dig_grounds *const g    = l->into;
-    const size_t              size = g->grounds * g->trajectories;
-    g->ground                      = calloc(g->grounds + 1, sizeof *g->ground);
-    g->packings                    = calloc(size + 1, sizeof *g->packings);
-    g->curve                       = calloc(size + 1, sizeof *g->curve);
-    return g->ground != NULL && g->packings != NULL && g->curve != NULL
-               ? DIG_OK
-               : dig_error_set(l->error, DIG_ENOMEM, "%s: no memory for the table", l->path);
+    const size_t                size = entries * head->trajectories;
+    struct dig_entry_set *const made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return NULL;
+    }
+    memcpy(made->scene_hash, head->scene_hash, sizeof made->scene_hash);
+    memcpy(made->depth_m, head->depth_m, sizeof made->depth_m);
+    made->trajectories = head->trajectories;
+    made->entries      = entries;
+    made->entry        = calloc(entries + 1, sizeof *made->entry);
+    made->packings     = calloc(size + 1, sizeof *made->packings);
+    made->curve        = calloc(size + 1, sizeof *made->curve);
+    if (made->entry == NULL || made->packings == NULL || made->curve == NULL) {
+        dig_entry_set_destroy(made);
+        return NULL;
+    }
+    return made;
 }
 
 static enum dig_status read_ground(const struct loader *const l, sqlite3_stmt *const s,
-                                   struct dig_ground *const ground)
+                                   struct dig_entry *const entry)
 {
-    ground->id = sqlite3_column_int64(s, 0);
+    entry->ground = sqlite3_column_int64(s, 0);
     for (int a = 0; a < DIG_AXES; a++) {
-        const double value      = sqlite3_column_double(s, a + 1);
-        ground->gravel.value[a] = value;
+        const double value     = sqlite3_column_double(s, a + 1);
+        entry->gravel.value[a] = value;
         if (!isfinite(value) || value < 0.0) {
             return dig_error_set(l->error, DIG_EINVAL, "%s: ground.%s: %g, expected >= 0", l->path,
                                  dig_axis_name((enum dig_axis)a), value);
         }
     }
     const char *const effect = (const char *)sqlite3_column_text(s, DIG_AXES + 1);
-    ground->magnitude        = sqlite3_column_double(s, DIG_AXES + 2);
+    entry->magnitude         = sqlite3_column_double(s, DIG_AXES + 2);
     if (effect == NULL || (effect[0] != '\0' && dig_effect_find(effect) < 0) ||
-        !isfinite(ground->magnitude)) {
+        !isfinite(entry->magnitude)) {
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: ground.effect: \"%.40s\" of magnitude %g, expected an effect "
                              "this program knows, of a finite one",
-                             l->path, effect != NULL ? effect : "", ground->magnitude);
+                             l->path, effect != NULL ? effect : "", entry->magnitude);
     }
-    (void)snprintf(ground->effect, sizeof ground->effect, "%s", effect);
-    ground->approach = (struct dig_approach){ sqlite3_column_double(s, DIG_AXES + 3),
-                                              sqlite3_column_double(s, DIG_AXES + 4) };
-    if (!(ground->approach.depth > 0.0) || !isfinite(ground->approach.attack_rad)) {
+    entry->effect   = effect[0] != '\0' ? (enum dig_effect_id)dig_effect_find(effect) : DIG_EFFECTS;
+    entry->approach = (struct dig_approach){ sqlite3_column_double(s, DIG_AXES + 3),
+                                             sqlite3_column_double(s, DIG_AXES + 4) };
+    if (!(entry->approach.depth > 0.0) || !isfinite(entry->approach.attack_rad)) {
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: ground.depth: %g, attack_rad: %g, expected > 0, and finite",
-                             l->path, ground->approach.depth, ground->approach.attack_rad);
+                             l->path, entry->approach.depth, entry->approach.attack_rad);
     }
     return DIG_OK;
 }
@@ -119,24 +136,25 @@ static enum dig_status read_grounds(const struct loader *const l)
     sqlite3_stmt   *s      = NULL;
     enum dig_status status = prepare(
         l, "id, friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad", "ground",
-        "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad", &s);
+        "ORDER BY " EFFECT_PLACE ", friction, rolling, density_kgpm3, magnitude, depth, attack_rad",
+        &s);
     size_t i = 0;
-    while (status == DIG_OK && i < l->into->grounds) {
+    while (status == DIG_OK && i < l->into->entries) {
         if (sqlite3_step(s) != SQLITE_ROW) {
             status =
                 dig_error_set(l->error, DIG_EINVAL, "%s: ground: fewer rows than counted", l->path);
             break;
         }
-        status = read_ground(l, s, &l->into->ground[i++]);
+        status = read_ground(l, s, &l->into->entry[i++]);
     }
     (void)sqlite3_finalize(s);
     return status;
 }
 
-static size_t index_of(const struct dig_grounds *const g, const sqlite3_int64 id)
+static size_t index_of(const struct dig_entry_set *const g, const sqlite3_int64 id)
 {
     size_t i = 0;
-    while (i < g->grounds && g->ground[i].id != id) {
+    while (i < g->entries && g->entry[i].ground != id) {
         i++;
     }
     return i;
@@ -157,16 +175,16 @@ static bool read_blob(sqlite3_stmt *const s, const int column, float *const into
 static enum dig_status read_entry(const struct loader *const l, sqlite3_stmt *const s,
                                   size_t *const hint)
 {
-    struct dig_grounds *const g          = l->into;
-    const sqlite3_int64       ground     = sqlite3_column_int64(s, 0);
-    const sqlite3_int64       trajectory = sqlite3_column_int64(s, 1);
-    const sqlite3_int64       packings   = sqlite3_column_int64(s, 2);
+    struct dig_entry_set *const g          = l->into;
+    const sqlite3_int64         ground     = sqlite3_column_int64(s, 0);
+    const sqlite3_int64         trajectory = sqlite3_column_int64(s, 1);
+    const sqlite3_int64         packings   = sqlite3_column_int64(s, 2);
 
     // Rows come in the order the grounds were made, which is seldom far from ours.
     const size_t at =
-        *hint < g->grounds && g->ground[*hint].id == ground ? *hint : index_of(g, ground);
+        *hint < g->entries && g->entry[*hint].ground == ground ? *hint : index_of(g, ground);
     *hint = at;
-    if (at >= g->grounds || trajectory < 0 || trajectory >= (sqlite3_int64)g->trajectories ||
+    if (at >= g->entries || trajectory < 0 || trajectory >= (sqlite3_int64)g->trajectories ||
         packings < 1 || packings > PACKINGS_MAX) {
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: entry: expected a ground and a trajectory of the table, "
@@ -202,46 +220,49 @@ static enum dig_status read_entries(const struct loader *const l)
 enum dig_status dig_grounds_load(sqlite3 *const db, const char *const path,
                                  const struct dig_table_head *const head,
                                  const enum dig_grounds_kind        kind,
-                                 struct dig_grounds *const grounds, struct dig_error *const error)
+                                 struct dig_entry_set **const       grounds,
+                                 struct dig_error *const            error)
 {
-    struct dig_grounds  made   = { .trajectories = head->trajectories };
-    const struct loader l      = { path, db, error, where_of(kind), &made };
-    enum dig_status     status = count_rows(&l, &made.grounds);
-    if (status == DIG_OK) {
-        status = allocate(&l);
+    struct loader   l      = { path, db, error, where_of(kind), NULL };
+    size_t          rows   = 0;
+    enum dig_status status = count_rows(&l, &rows);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (status == DIG_OK) {
-        status = read_grounds(&l);
+    l.into = dig_grounds_create(head, rows);
+    if (l.into == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
     }
+    status = read_grounds(&l);
     if (status == DIG_OK) {
         status = read_entries(&l);
     }
     if (status != DIG_OK) {
-        dig_grounds_finish(&made);
+        dig_entry_set_destroy(l.into);
         return status;
     }
-    *grounds = made;
+    *grounds = l.into;
     return DIG_OK;
 }
 
-struct dig_table_step dig_grounds_step(const struct dig_grounds *const    grounds,
+struct dig_table_step dig_grounds_step(const struct dig_entry_set *const  grounds,
                                        const struct dig_table_head *const head)
 {
     double lightest_kgpm3 = INFINITY;
-    for (size_t i = 0; i < grounds->grounds; i++) {
+    for (size_t i = 0; i < grounds->entries; i++) {
         lightest_kgpm3 =
-            fmin(lightest_kgpm3, grounds->ground[i].gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+            fmin(lightest_kgpm3, grounds->entry[i].gravel.value[DIG_AXIS_DENSITY_kgpm3]);
     }
     return dig_table_step_of(&head->finest, head->normal, lightest_kgpm3, head->time_step_s);
 }
 
-void dig_grounds_finish(struct dig_grounds *const grounds)
+void dig_entry_set_destroy(struct dig_entry_set *const set)
 {
-    if (grounds != NULL) {
-        free(grounds->ground);
-        free(grounds->packings);
-        free(grounds->curve);
-        *grounds = (struct dig_grounds){ 0 };
+    if (set != NULL) {
+        free(set->entry);
+        free(set->packings);
+        free(set->curve);
+        free(set);
     }
 }
 
@@ -251,10 +272,10 @@ struct pool {
     double freedom;
 };
 
-static void add_channel(const struct dig_grounds *const g, const size_t trajectory, const size_t c,
-                        struct pool *const pool)
+static void add_channel(const struct dig_entry_set *const g, const size_t trajectory,
+                        const size_t c, struct pool *const pool)
 {
-    for (size_t e = 0; e < g->grounds; e++) {
+    for (size_t e = 0; e < g->entries; e++) {
         const size_t                  at    = e * g->trajectories + trajectory;
         const struct dig_curve *const curve = &g->curve[at];
         const double                  scale = dig_curve_mean_square(curve->mean[c]);
@@ -270,10 +291,10 @@ static void add_channel(const struct dig_grounds *const g, const size_t trajecto
     }
 }
 
-static void spread_channel(struct dig_grounds *const g, const size_t trajectory, const size_t c,
+static void spread_channel(struct dig_entry_set *const g, const size_t trajectory, const size_t c,
                            const struct pool *const pool)
 {
-    for (size_t e = 0; e < g->grounds; e++) {
+    for (size_t e = 0; e < g->entries; e++) {
         const size_t            at    = e * g->trajectories + trajectory;
         struct dig_curve *const curve = &g->curve[at];
         if (g->packings[at] != 1) {
@@ -288,8 +309,8 @@ static void spread_channel(struct dig_grounds *const g, const size_t trajectory,
     }
 }
 
-void dig_grounds_pool_spread(const struct dig_grounds *const others,
-                             struct dig_grounds *const       grounds)
+void dig_grounds_pool_spread(const struct dig_entry_set *const others,
+                             struct dig_entry_set *const       grounds)
 {
     for (size_t t = 0; t < grounds->trajectories; t++) {
         for (size_t c = 0; c < DIG_CHANNELS; c++) {

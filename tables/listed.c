@@ -21,8 +21,8 @@ struct dig_listed dig_listed_at(const struct dig_curve_set *const set, const siz
         one.curve       = &set->curve[at];
         return one;
     }
-    const struct dig_approach_set *const   other  = set->approaches;
-    const struct dig_approach_entry *const dug_so = &other->entry[entry - set->entries];
+    const struct dig_entry_set *const other  = set->approaches;
+    const struct dig_entry *const     dug_so = &other->entry[entry - set->entries];
     const size_t at = (entry - set->entries) * other->trajectories + trajectory;
     one.gravel      = dug_so->gravel;
     one.approach    = dug_so->approach;

@@ -4,8 +4,8 @@
 #ifndef DIG_TABLES_LISTED_H
 #define DIG_TABLES_LISTED_H
 
-#include "core/approach_set.h"
 #include "core/curve.h"
+#include "core/entry_set.h"
 
 /// What one entry holds of one trajectory. The curve is the set's; packings 0: not computed.
 struct dig_listed {

@@ -3,7 +3,6 @@
 #include "core/sort.h"
 #include "tables/density_scale.h"
 #include "tables/grounds.h"
-#include "tables/load_approaches.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
@@ -92,10 +91,10 @@ static void copy_head(struct dig_curve_set *const set, const struct dig_table_he
 }
 
 // Takes over what the plain grounds hold.
-static enum dig_status fill(struct dig_curve_set *const set, struct dig_grounds *const plain,
+static enum dig_status fill(struct dig_curve_set *const set, struct dig_entry_set *const plain,
                             const char *const path, struct dig_error *const error)
 {
-    set->entries    = plain->grounds;
+    set->entries    = plain->entries;
     set->packings   = plain->packings;
     set->curve      = plain->curve;
     plain->packings = NULL;
@@ -110,7 +109,7 @@ static enum dig_status fill(struct dig_curve_set *const set, struct dig_grounds 
         return no_memory(path, error);
     }
     for (size_t i = 0; i < set->entries; i++) {
-        set->gravel[i] = plain->ground[i].gravel;
+        set->gravel[i] = plain->entry[i].gravel;
     }
     return build_grid(set, path, error);
 }
@@ -119,13 +118,13 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
                              const struct dig_table_head *const head,
                              struct dig_curve_set **const set, struct dig_error *const error)
 {
-    struct dig_grounds plain  = { .grounds = 0 };
-    enum dig_status    status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
+    struct dig_entry_set *plain = NULL;
+    enum dig_status status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
     if (status != DIG_OK) {
         return status;
     }
-    dig_grounds_pool_spread(NULL, &plain);
-    const struct dig_table_step step   = dig_grounds_step(&plain, head);
+    dig_grounds_pool_spread(NULL, plain);
+    const struct dig_table_step step   = dig_grounds_step(plain, head);
     size_t                      copies = 1;
     status = dig_grounds_spread_density(head, path, &plain, &copies, error);
     struct dig_curve_set *const made = calloc(1, sizeof *made);
@@ -135,9 +134,9 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
         copy_head(made, head);
         made->step   = step;
         made->copies = copies;
-        status       = fill(made, &plain, path, error);
+        status       = fill(made, plain, path, error);
     }
-    dig_grounds_finish(&plain);
+    dig_entry_set_destroy(plain);
     if (status != DIG_OK) {
         dig_curve_set_destroy(made);
         return status;
@@ -157,7 +156,7 @@ void dig_curve_set_destroy(struct dig_curve_set *const set)
         }
         free(set->cell);
         free(set->covariance);
-        dig_approach_set_destroy(set->approaches);
+        dig_entry_set_destroy(set->approaches);
         free(set);
     }
 }

@@ -2,19 +2,46 @@
 
 #include "tables/load.h"
 
-#include "tables/load_approaches.h"
+#include "tables/density_scale.h"
+#include "tables/grounds.h"
 #include "tables/load_covariance.h"
-#include "tables/load_effects.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
 #include <string.h>
 
+// Where an entry has one packing, its spread is pooled from all that were dug without an effect.
+static enum dig_status load_approaches(sqlite3 *const db, const char *const path,
+                                       const struct dig_table_head *const head,
+                                       struct dig_entry_set **const       set,
+                                       struct dig_error *const            error)
+{
+    struct dig_entry_set *plain  = NULL;
+    struct dig_entry_set *other  = NULL;
+    size_t                copies = 1;
+    enum dig_status       status =
+        dig_grounds_load(db, path, head, DIG_GROUNDS_APPROACHED, &other, error);
+    if (status == DIG_OK && other->entries > 0) {
+        status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
+        if (status == DIG_OK) {
+            dig_grounds_pool_spread(plain, other);
+            status = dig_grounds_spread_density(head, path, &other, &copies, error);
+        }
+        dig_entry_set_destroy(plain);
+    }
+    if (status != DIG_OK || other->entries == 0) {
+        dig_entry_set_destroy(other);
+        return status;
+    }
+    *set = other;
+    return DIG_OK;
+}
+
 // as_dug: a density that stands for all stays one.
 static enum dig_status read_table(const char *const path, const bool as_dug,
-                                  struct dig_curve_set **const  plain,
-                                  struct dig_effect_set **const effects,
-                                  struct dig_error *const       error)
+                                  struct dig_curve_set **const plain,
+                                  struct dig_entry_set **const effects,
+                                  struct dig_error *const      error)
 {
     sqlite3              *db     = NULL;
     struct dig_table_head head   = { .trajectories = 0 };
@@ -22,18 +49,21 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
     if (status != DIG_OK) {
         return status;
     }
-    head.density_scales           = head.density_scales && !as_dug;
-    struct dig_curve_set  *set    = NULL;
-    struct dig_effect_set *varied = NULL;
-    status                        = dig_sql_load(db, path, &head, &set, error);
+    head.density_scales          = head.density_scales && !as_dug;
+    struct dig_curve_set *set    = NULL;
+    struct dig_entry_set *varied = NULL;
+    status                       = dig_sql_load(db, path, &head, &set, error);
     if (status == DIG_OK && set != NULL) {
         status = dig_sql_load_covariance(db, path, &head, set, error);
     }
     if (status == DIG_OK && set != NULL) {
-        status = dig_sql_load_approaches(db, path, &head, &set->approaches, error);
+        status = load_approaches(db, path, &head, &set->approaches, error);
     }
     if (status == DIG_OK && effects != NULL) {
-        status = dig_sql_load_effects(db, path, &head, &varied, error);
+        status = dig_grounds_load(db, path, &head, DIG_GROUNDS_VARIED, &varied, error);
+    }
+    if (varied != NULL) {
+        dig_grounds_pool_spread(NULL, varied);
     }
     (void)sqlite3_close(db);
     if (status != DIG_OK) {
@@ -48,7 +78,7 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
 }
 
 enum dig_status dig_table_list(const char *const path, struct dig_curve_set **const plain,
-                               struct dig_effect_set **const effects, struct dig_error *const error)
+                               struct dig_entry_set **const effects, struct dig_error *const error)
 {
     assert(path != NULL && plain != NULL);
     return read_table(path, true, plain, effects, error);
@@ -76,13 +106,13 @@ enum dig_status dig_table_load(const char *const path, struct dig_curve_set **co
 }
 
 enum dig_status dig_effects_load(const char *const path, const struct dig_curve_set *const plain,
-                                 struct dig_effect_set **const set, struct dig_error *const error)
+                                 struct dig_entry_set **const set, struct dig_error *const error)
 {
     assert(path != NULL && plain != NULL && set != NULL);
 
-    struct dig_curve_set  *beside = NULL;
-    struct dig_effect_set *made   = NULL;
-    enum dig_status        status = dig_table_list(path, &beside, &made, error);
+    struct dig_curve_set *beside = NULL;
+    struct dig_entry_set *made   = NULL;
+    enum dig_status       status = dig_table_list(path, &beside, &made, error);
     if (status != DIG_OK || beside == NULL || made == NULL) {
         return status;
     }
@@ -98,7 +128,7 @@ enum dig_status dig_effects_load(const char *const path, const struct dig_curve_
     }
     dig_curve_set_destroy(beside);
     if (status != DIG_OK) {
-        dig_effect_set_destroy(made);
+        dig_entry_set_destroy(made);
         return status;
     }
     *set = made;

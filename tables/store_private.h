@@ -3,7 +3,6 @@
 #ifndef DIG_TABLES_STORE_PRIVATE_H
 #define DIG_TABLES_STORE_PRIVATE_H
 
-#include "core/effect_set.h"
 #include "tables/derive.h"
 #include "tables/schema/schema.h"
 #include "tables/store.h"
@@ -31,12 +30,6 @@ DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, sqlite3 **db,
 DIG_MUST_CHECK enum dig_status dig_sql_load(sqlite3 *db, const char *path,
                                             const struct dig_table_head *head,
                                             struct dig_curve_set **set, struct dig_error *error);
-
-/// What was dug with an effect, likewise.
-DIG_MUST_CHECK enum dig_status dig_sql_load_effects(sqlite3 *db, const char *path,
-                                                    const struct dig_table_head *head,
-                                                    struct dig_effect_set      **set,
-                                                    struct dig_error            *error);
 
 /// Binds the parameters 1 … 7 of a statement to friction, rolling, density, effect, magnitude,
 /// depth and attack.

@@ -4,7 +4,7 @@
 #ifndef DIG_TESTS_APPROACH_TABLE_H
 #define DIG_TESTS_APPROACH_TABLE_H
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "core/units.h"
 #include "tests/cube_table.h"
 #include "tests/made_table.h"
@@ -17,11 +17,11 @@
 #define APPROACH_m    0.0261366 // depth of simpleA: .6 s at .0435611 m/s from the ground on
 
 struct approach_table {
-    struct cube_table         cube;
-    struct dig_approach_set   others;
-    struct dig_approach_entry entry[CUBE_GRAVELS * APPROACH_WAYS];
-    int                       packings[CUBE_GRAVELS * APPROACH_WAYS * 2];
-    struct dig_curve          curve[CUBE_GRAVELS * APPROACH_WAYS * 2];
+    struct cube_table    cube;
+    struct dig_entry_set others;
+    struct dig_entry     entry[CUBE_GRAVELS * APPROACH_WAYS];
+    int                  packings[CUBE_GRAVELS * APPROACH_WAYS * 2];
+    struct dig_curve     curve[CUBE_GRAVELS * APPROACH_WAYS * 2];
 };
 
 /// How much gravel g resists.
@@ -83,12 +83,12 @@ static inline void approach_table_init(struct approach_table *const table, const
     set->smooth_half_s = 0.16;
     set->trajectories  = 2;
     set->approaches    = &table->others;
-    table->others      = (struct dig_approach_set){ .trajectories = 2,
-                                                    .depth_m      = { APPROACH_m, APPROACH_m },
-                                                    .entries      = gravels * ways,
-                                                    .entry        = table->entry,
-                                                    .packings     = table->packings,
-                                                    .curve        = table->curve };
+    table->others      = (struct dig_entry_set){ .trajectories = 2,
+                                                 .depth_m      = { APPROACH_m, APPROACH_m },
+                                                 .entries      = gravels * ways,
+                                                 .entry        = table->entry,
+                                                 .packings     = table->packings,
+                                                 .curve        = table->curve };
     for (size_t g = 0; g < CUBE_GRAVELS; g++) {
         for (size_t t = 0; t < 2; t++) {
             set->trajectory[t]              = approach_dug(t, dig_approach_plain());
@@ -98,7 +98,9 @@ static inline void approach_table_init(struct approach_table *const table, const
         }
         for (size_t w = 0; g < gravels && w < ways; w++) {
             const size_t i  = g * ways + w;
-            table->entry[i] = (struct dig_approach_entry){ table->cube.gravel[g], way[w] };
+            table->entry[i] = (struct dig_entry){ .gravel   = table->cube.gravel[g],
+                                                  .approach = way[w],
+                                                  .effect   = DIG_EFFECTS };
             for (size_t t = 0; t < 2; t++) {
                 const struct dig_trajectory dug = approach_dug(t, way[w]);
                 table->packings[2 * i + t]      = packings;

@@ -103,13 +103,13 @@ static void mean_curve(const struct dig_gravel *const gravel, const enum made_tr
     }
 }
 
-static struct dig_effect_set *make_effects(const struct dig_curve_set *const set,
-                                           uint64_t *const                   seed)
+static struct dig_entry_set *make_effects(const struct dig_curve_set *const set,
+                                          uint64_t *const                   seed)
 {
     static const struct dig_gravel bases[BASES] = { { { 0.3, 0.1, 2500 } },
                                                     { { 0.5, 0.4, 2500 } },
                                                     { { 0.9, 1.0, 2500 } } };
-    struct dig_effect_set *const   effects      = calloc(1, sizeof *effects);
+    struct dig_entry_set *const    effects      = calloc(1, sizeof *effects);
     memcpy(effects->scene_hash, set->scene_hash, sizeof effects->scene_hash);
     effects->trajectories = set->trajectories;
     effects->entries      = sizeof known / sizeof known[0] * BASES * MAGNITUDES;
@@ -120,8 +120,9 @@ static struct dig_effect_set *make_effects(const struct dig_curve_set *const set
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         for (size_t b = 0; b < BASES; b++) {
             for (size_t m = 1; m <= MAGNITUDES; m++, e++) {
-                const double u    = (double)m / MAGNITUDES;
-                effects->entry[e] = (struct dig_effect_entry){ known[i], u, bases[b] };
+                const double u = (double)m / MAGNITUDES;
+                effects->entry[e] =
+                    (struct dig_entry){ .effect = known[i], .magnitude = u, .gravel = bases[b] };
                 for (size_t t = 0; t < set->trajectories; t++) {
                     const size_t slot       = e * set->trajectories + t;
                     effects->packings[slot] = BED_PACKINGS;

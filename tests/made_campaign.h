@@ -6,7 +6,7 @@
 
 #include "closed_loop/model/scatter.h"
 #include "closed_loop/recordings/measured.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "tests/made_table.h"
 
 #define MADE_SCATTER 0.12 // of one dig, relative to the rms of its channel, at every point
@@ -15,7 +15,7 @@
 /// ground slope and adhesion at three gravels, three magnitudes, of three digs each.
 struct made_world {
     struct dig_curve_set        *set;
-    struct dig_effect_set       *effects;
+    struct dig_entry_set        *effects;
     struct dig_response_surface *surface;
     struct dig_scatter          *scatter;
 };

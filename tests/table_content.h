@@ -3,10 +3,8 @@
 #ifndef DIG_TESTS_TABLE_CONTENT_H
 #define DIG_TESTS_TABLE_CONTENT_H
 
-#include "core/approach_set.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tables/store.h"
 
 #include <string.h>
@@ -54,8 +52,8 @@ static inline void table_mix_set(uint64_t *const sum, const struct dig_curve_set
     table_mix(sum, set->packings, n * sizeof *set->packings);
     table_mix(sum, set->curve, n * sizeof *set->curve);
     if (set->approaches != NULL) {
-        const struct dig_approach_set *const other = set->approaches;
-        const size_t                         m     = other->entries * other->trajectories;
+        const struct dig_entry_set *const other = set->approaches;
+        const size_t                      m     = other->entries * other->trajectories;
         table_mix(sum, other->entry, other->entries * sizeof *other->entry);
         table_mix(sum, other->packings, m * sizeof *other->packings);
         table_mix(sum, other->curve, m * sizeof *other->curve);
@@ -66,9 +64,9 @@ static inline void table_mix_set(uint64_t *const sum, const struct dig_curve_set
 /// False when a reader refuses the file.
 static inline bool table_content(const char *const path, uint64_t *const sum)
 {
-    struct dig_curve_set  *set     = NULL;
-    struct dig_effect_set *effects = NULL;
-    struct dig_store      *store   = NULL;
+    struct dig_curve_set *set     = NULL;
+    struct dig_entry_set *effects = NULL;
+    struct dig_store     *store   = NULL;
     if (dig_table_list(path, &set, &effects, NULL) != DIG_OK) {
         return false;
     }
@@ -83,7 +81,7 @@ static inline bool table_content(const char *const path, uint64_t *const sum)
     table_mix(sum, effects->packings, n * sizeof *effects->packings);
     table_mix(sum, effects->curve, n * sizeof *effects->curve);
     dig_curve_set_destroy(set);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     const struct dig_run_visitor visitor = { table_mix_run, sum };
     enum dig_status              status  = dig_store_open(path, &store, NULL);
     if (status == DIG_OK) {

@@ -37,7 +37,7 @@ static void fill_speeds(struct dig_soil *const soil)
 }
 
 enum dig_status dig_soil_create(const struct dig_response_surface *const surface,
-                                const struct dig_effect_set *const       effects,
+                                const struct dig_entry_set *const        effects,
                                 const struct dig_scatter *const          scatter,
                                 struct dig_soil **const                  soil)
 {

@@ -24,7 +24,7 @@
 #include "closed_loop/model/scatter.h"
 #include "closed_loop/recordings/measured.h"
 #include "core/effect.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 
 #define DIG_SOIL_POWERS 3                    // of s
 #define DIG_SOIL_KNOTS  9                    // magnitudes and where it is absent
@@ -64,7 +64,7 @@ struct dig_soil {
 /// then. Some megabytes; free with free(). DIG_EINVAL: effects of another table's scene or
 /// trajectories.
 DIG_MUST_CHECK enum dig_status dig_soil_create(const struct dig_response_surface *surface,
-                                               const struct dig_effect_set       *effects,
+                                               const struct dig_entry_set        *effects,
                                                const struct dig_scatter          *scatter,
                                                struct dig_soil                  **soil);
 

@@ -52,13 +52,13 @@ struct bed {
     double                  feature[DIG_FEATURES]; // of what the effect adds, over the amplitude
 };
 
-static void describe_bed(const struct dig_soil *const soil, const struct dig_effect_set *const set,
+static void describe_bed(const struct dig_soil *const soil, const struct dig_entry_set *const set,
                          const struct dig_scatter *const scatter, const size_t entry,
                          const size_t t, struct bed *const bed)
 {
-    const struct dig_effect_entry *const of = &set->entry[entry];
-    double                               place[DIG_AXES];
-    double                               plain[DIG_FEATURES];
+    const struct dig_entry *const of = &set->entry[entry];
+    double                        place[DIG_AXES];
+    double                        plain[DIG_FEATURES];
     dig_response_surface_place(soil->surface, &of->gravel, place);
     dig_response_surface_features(soil->surface, t, place, plain, bed->amplitude);
     dig_response_surface_curve(soil->surface, t, place, bed->plain);
@@ -78,13 +78,13 @@ static void describe_bed(const struct dig_soil *const soil, const struct dig_eff
                    pow(size[DIG_CHANNEL_MY_Nm] / bed->amplitude[DIG_CHANNEL_MY_Nm], 2.0));
 }
 
-static size_t gather(const struct dig_soil *const soil, const struct dig_effect_set *const set,
+static size_t gather(const struct dig_soil *const soil, const struct dig_entry_set *const set,
                      const struct dig_scatter *const scatter, const enum dig_effect_id effect,
                      const size_t side, const size_t t, struct bed bed[])
 {
     size_t beds = 0;
     for (size_t e = 0; e < set->entries; e++) {
-        const struct dig_effect_entry *const of = &set->entry[e];
+        const struct dig_entry *const of = &set->entry[e];
         if (of->effect == effect && set->packings[e * set->trajectories + t] > 0 &&
             side_of(effect, of->magnitude - soil->absent[effect]) == side) {
             describe_bed(soil, set, scatter, e, t, &bed[beds++]);
@@ -211,7 +211,7 @@ static void fit(const size_t beds, const struct bed bed[], const double scatter[
 }
 
 // The scale and range of an effect's magnitudes. False when the set has none.
-static bool set_range(struct dig_soil *const soil, const struct dig_effect_set *const set,
+static bool set_range(struct dig_soil *const soil, const struct dig_entry_set *const set,
                       const enum dig_effect_id effect)
 {
     double least = 0.0;
@@ -236,7 +236,7 @@ static bool set_range(struct dig_soil *const soil, const struct dig_effect_set *
 
 // The template of one side of an effect along a trajectory, of what beds there are. bed: room for
 // all.
-static enum dig_status fit_side(struct dig_soil *const soil, const struct dig_effect_set *const set,
+static enum dig_status fit_side(struct dig_soil *const soil, const struct dig_entry_set *const set,
                                 const struct dig_scatter *const scatter,
                                 const enum dig_effect_id effect, const size_t side, const size_t t,
                                 struct bed bed[])
@@ -268,7 +268,7 @@ static enum dig_status fit_side(struct dig_soil *const soil, const struct dig_ef
     return status;
 }
 
-enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_effect_set *const set,
+enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_entry_set *const set,
                              const struct dig_scatter *const scatter)
 {
     assert(soil != NULL && set != NULL && scatter != NULL);

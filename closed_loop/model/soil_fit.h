@@ -9,7 +9,7 @@
 
 /// Fits the templates and ranges of all effects that the set has beds of; soil->surface and absent
 /// are given. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_soil_fit(struct dig_soil *soil, const struct dig_effect_set *set,
+DIG_MUST_CHECK enum dig_status dig_soil_fit(struct dig_soil *soil, const struct dig_entry_set *set,
                                             const struct dig_scatter *scatter);
 
 /// log(amplitude of My / density): how hard a gravel resists for its weight.

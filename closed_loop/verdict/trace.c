@@ -333,7 +333,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
 }
 
 enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char *const table,
-                              const struct dig_effect_set *const     effects,
+                              const struct dig_entry_set *const      effects,
                               const struct dig_trace_settings *const settings,
                               struct dig_machine_side *const machine, const size_t digs,
                               struct dig_measured measured[], struct dig_trace *const trace,

@@ -9,7 +9,7 @@
 #include "closed_loop/recordings/measured.h"
 #include "core/curve.h"
 #include "core/effect.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "core/error.h"
 #include "core/model.h"
 #include "estimator/effects/effect.h"
@@ -89,7 +89,7 @@ struct dig_trace_settings dig_trace_settings_default(void);
 /// fit or identify digs, a trajectory that the set lacks; *error says so. DIG_ENOMEM. Writes *trace
 /// on success only.
 DIG_MUST_CHECK enum dig_status dig_trace_run(const struct dig_curve_set *set, const char *table,
-                                             const struct dig_effect_set     *effects,
+                                             const struct dig_entry_set      *effects,
                                              const struct dig_trace_settings *settings,
                                              struct dig_machine_side *machine, size_t digs,
                                              struct dig_measured measured[],

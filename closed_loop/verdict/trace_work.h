@@ -21,7 +21,7 @@ struct dig_trace_work {
     // Of the caller: see dig_trace_run().
     const struct dig_curve_set      *set;
     const char                      *table;
-    const struct dig_effect_set     *effects;
+    const struct dig_entry_set      *effects;
     const struct dig_trace_settings *settings;
     struct dig_machine_side         *machine;
     size_t                           digs;

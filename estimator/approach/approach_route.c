@@ -1,6 +1,6 @@
 #include "estimator/approach/approach_route.h"
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "estimator/approach/approach_response.h"
 
 #include <assert.h>
@@ -18,7 +18,7 @@ enum { LEVELS = sizeof level / sizeof level[0] };
 struct dig_route dig_approach_route(const struct dig_curve_set *const set, const size_t trajectory)
 {
     assert(set != NULL && trajectory < set->trajectories);
-    const struct dig_approach_set *const other = set->approaches;
+    const struct dig_entry_set *const other = set->approaches;
     struct dig_route route = dig_route_make(&set->trajectory[trajectory], set->tooth_m);
     for (size_t i = 0; other != NULL && i < other->entries; i++) {
         if (other->packings[i * other->trajectories + trajectory] > 0) {
@@ -53,8 +53,8 @@ struct dig_depths dig_approach_depths(const struct dig_curve_set *const set,
                                       const size_t                      trajectory)
 {
     assert(set != NULL && trajectory < set->trajectories);
-    const struct dig_approach_set *const other  = set->approaches;
-    struct dig_depths                    depths = { 1.0, 1.0 };
+    const struct dig_entry_set *const other  = set->approaches;
+    struct dig_depths                 depths = { 1.0, 1.0 };
     for (size_t i = 0; other != NULL && i < other->entries; i++) {
         if (other->packings[i * other->trajectories + trajectory] > 0) {
             depths.least = fmin(depths.least, other->entry[i].approach.depth);
@@ -104,7 +104,7 @@ static double ramp_m(const double moment_Nm[const DIG_CURVE_POINTS], const doubl
 static double table_ramp_m(const struct dig_curve_set *const set, const size_t trajectory,
                            const struct dig_approach *const approach)
 {
-    const struct dig_approach_set *const other = set->approaches;
+    const struct dig_entry_set *const other = set->approaches;
     const struct dig_route route = dig_approach_route_deep(set, trajectory, approach->depth);
     const bool             plain = dig_approach_is_plain(approach);
     const size_t           n     = plain ? set->entries : other->entries;
@@ -158,9 +158,9 @@ static double slope_of(const struct line *const line)
 static struct line line_of(const struct dig_curve_set *const set, const size_t trajectory,
                            const bool attack)
 {
-    const struct dig_approach_set *const other = set->approaches;
-    const struct dig_approach            plain = dig_approach_plain();
-    struct line                          line  = { .n = 0.0 };
+    const struct dig_entry_set *const other = set->approaches;
+    const struct dig_approach         plain = dig_approach_plain();
+    struct line                       line  = { .n = 0.0 };
     add(&line, attack ? 0.0 : 1.0, table_ramp_m(set, trajectory, &plain));
     for (size_t i = 0; i < other->entries; i++) {
         const struct dig_approach *const at     = &other->entry[i].approach;

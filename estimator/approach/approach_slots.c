@@ -1,6 +1,6 @@
 #include "estimator/approach/approach_slots.h"
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "estimator/approach/approaches.h"
 
 #include <assert.h>
@@ -12,8 +12,8 @@ static const double alike = 0.005;
 bool dig_approach_varies(const struct dig_curve_set *const set, const size_t trajectory)
 {
     assert(set != NULL && trajectory < set->trajectories);
-    const struct dig_approach_set *const other = set->approaches;
-    bool                                 any   = false;
+    const struct dig_entry_set *const other = set->approaches;
+    bool                              any   = false;
     for (size_t i = 0; other != NULL && !any && i < other->entries; i++) {
         any = other->packings[i * other->trajectories + trajectory] > 0;
     }

@@ -11,9 +11,9 @@ void dig_nodes_of(const struct dig_curve_set *const set, const size_t entry,
                   const size_t trajectory, struct dig_nodes *const nodes)
 {
     assert(set != NULL && entry < set->entries && trajectory < set->trajectories && nodes != NULL);
-    const struct dig_approach_set *const other = set->approaches;
-    const size_t                         slot  = entry * set->trajectories + trajectory;
-    nodes->nodes                               = 0;
+    const struct dig_entry_set *const other = set->approaches;
+    const size_t                      slot  = entry * set->trajectories + trajectory;
+    nodes->nodes                            = 0;
     if (set->packings[slot] <= 0) {
         return;
     }
@@ -96,9 +96,9 @@ static size_t chain(const size_t n, const struct point point[], struct point hul
 static size_t collect(const struct dig_curve_set *const set, const size_t trajectory,
                       struct point point[const DIG_NODES_MAX])
 {
-    const struct dig_approach_set *const other = set->approaches;
-    size_t                               n     = 1;
-    point[0]                                   = (struct point){ 0.0, 0.0 };
+    const struct dig_entry_set *const other = set->approaches;
+    size_t                            n     = 1;
+    point[0]                                = (struct point){ 0.0, 0.0 };
     for (size_t i = 0; other != NULL && i < other->entries && n < DIG_NODES_MAX; i++) {
         const struct point p = place_of(set, trajectory, &other->entry[i].approach);
         bool new             = other->packings[i * other->trajectories + trajectory] > 0;

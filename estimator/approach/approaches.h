@@ -14,8 +14,8 @@
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACHES_H
 #define DIG_ESTIMATOR_APPROACH_APPROACHES_H
 
-#include "core/approach_set.h"
 #include "core/curve.h"
+#include "core/entry_set.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -54,8 +54,8 @@ static void add_unlisted(const struct dig_model_unlisted *const unlisted, const 
 }
 
 // Applies all effects to one curve of the table.
-static enum dig_status apply(const struct dig_curve_set *const  plain,
-                             const struct dig_effect_set *const effects,
+static enum dig_status apply(const struct dig_curve_set *const plain,
+                             const struct dig_entry_set *const effects,
                              const struct dig_model *const model, const size_t entry,
                              const size_t trajectory, struct dig_curve *const out)
 {
@@ -87,10 +87,10 @@ static enum dig_status apply(const struct dig_curve_set *const  plain,
     return DIG_OK;
 }
 
-enum dig_status dig_effects_apply(const struct dig_curve_set *const  plain,
-                                  const struct dig_effect_set *const effects,
-                                  const struct dig_model *const      model,
-                                  struct dig_curve_set *const        out)
+enum dig_status dig_effects_apply(const struct dig_curve_set *const plain,
+                                  const struct dig_entry_set *const effects,
+                                  const struct dig_model *const     model,
+                                  struct dig_curve_set *const       out)
 {
     assert(plain != NULL && model != NULL && out != NULL && out != plain);
     assert(out->entries == plain->entries && out->trajectories == plain->trajectories);

@@ -68,9 +68,9 @@ static void times(const double by, struct dig_template *const sum)
     }
 }
 
-enum dig_status dig_effect_add(const struct dig_effect *const     effect,
-                               const struct dig_curve_set *const  plain,
-                               const struct dig_effect_set *const effects, const double value[],
+enum dig_status dig_effect_add(const struct dig_effect *const    effect,
+                               const struct dig_curve_set *const plain,
+                               const struct dig_entry_set *const effects, const double value[],
                                const struct dig_gravel *const     gravel,
                                const struct dig_effect_dig *const dig,
                                struct dig_template *const         added)

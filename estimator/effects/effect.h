@@ -12,7 +12,7 @@
 
 #include "core/curve.h"
 #include "core/effect.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "core/model.h"
 #include "core/status.h"
 #include "estimator/effects/template.h"
@@ -116,9 +116,9 @@ DIG_MUST_CHECK enum dig_status dig_effect_values(const struct dig_model_effect *
 /// its magnitude in this dig is not the absent one, and its reduced form. effects may be NULL.
 /// sigma is the template's alone. Fails as dig_template_find(); DIG_ENOMATCH as well for a gravel
 /// outside the grid.
-DIG_MUST_CHECK enum dig_status dig_effect_add(const struct dig_effect     *effect,
-                                              const struct dig_curve_set  *plain,
-                                              const struct dig_effect_set *effects,
+DIG_MUST_CHECK enum dig_status dig_effect_add(const struct dig_effect    *effect,
+                                              const struct dig_curve_set *plain,
+                                              const struct dig_entry_set *effects,
                                               const double value[], const struct dig_gravel *gravel,
                                               const struct dig_effect_dig *dig,
                                               struct dig_template         *added);
@@ -133,9 +133,9 @@ DIG_MUST_CHECK enum dig_status dig_effects_correction(const struct dig_model *mo
 /// written, and packings become 0 where an effect has no template along a trajectory. DIG_ENOMATCH:
 /// it has none at all; DIG_EINVAL: a parameter it does not have. Then out is unspecified. Some ten
 /// milliseconds for a table.
-DIG_MUST_CHECK enum dig_status dig_effects_apply(const struct dig_curve_set  *plain,
-                                                 const struct dig_effect_set *effects,
-                                                 const struct dig_model      *model,
-                                                 struct dig_curve_set        *out);
+DIG_MUST_CHECK enum dig_status dig_effects_apply(const struct dig_curve_set *plain,
+                                                 const struct dig_entry_set *effects,
+                                                 const struct dig_model     *model,
+                                                 struct dig_curve_set       *out);
 
 #endif // DIG_ESTIMATOR_EFFECTS_EFFECT_H

@@ -44,14 +44,14 @@ static void widen(const enum dig_effect_id effect, double *const least, double *
     }
 }
 
-static bool is_computed(const struct dig_effect_set *const effects, const size_t entry,
+static bool is_computed(const struct dig_entry_set *const effects, const size_t entry,
                         const enum dig_effect_id effect, const size_t trajectory)
 {
     return effects->entry[entry].effect == effect &&
            effects->packings[entry * effects->trajectories + trajectory] > 0;
 }
 
-bool dig_template_range(const struct dig_effect_set *const effects, const enum dig_effect_id effect,
+bool dig_template_range(const struct dig_entry_set *const effects, const enum dig_effect_id effect,
                         const size_t trajectory, double *const low, double *const high)
 {
     assert(low != NULL && high != NULL);
@@ -132,8 +132,8 @@ static struct base *base_of(struct base base[], size_t *const bases,
     return made;
 }
 
-static enum dig_status gather(const struct dig_curve_set *const  plain,
-                              const struct dig_effect_set *const effects,
+static enum dig_status gather(const struct dig_curve_set *const plain,
+                              const struct dig_entry_set *const effects,
                               const enum dig_effect_id effect, const size_t trajectory,
                               struct base base[], size_t *const bases)
 {
@@ -241,8 +241,8 @@ static double magnitude_at(const struct base *const base, const enum dig_effect_
     return fmin(fmax(scaled, least), most);
 }
 
-enum dig_status dig_template_find(const struct dig_curve_set *const  plain,
-                                  const struct dig_effect_set *const effects,
+enum dig_status dig_template_find(const struct dig_curve_set *const plain,
+                                  const struct dig_entry_set *const effects,
                                   const enum dig_effect_id effect, const double magnitude,
                                   const struct dig_gravel *const gravel, const size_t trajectory,
                                   struct dig_template *const found)

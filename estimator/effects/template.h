@@ -12,7 +12,7 @@
 #define DIG_ESTIMATOR_EFFECTS_TEMPLATE_H
 
 #include "core/curve.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "core/status.h"
 
 #include <stdbool.h>
@@ -34,7 +34,7 @@ double dig_template_absent(enum dig_effect_id effect);
 
 /// Range of magnitudes with a template along this trajectory, extrapolation included; false when
 /// the set has none. set NULL: false. O(entries).
-bool dig_template_range(const struct dig_effect_set *effects, enum dig_effect_id effect,
+bool dig_template_range(const struct dig_entry_set *effects, enum dig_effect_id effect,
                         size_t trajectory, double *low, double *high);
 
 /// The addition at a magnitude and gravel. DIG_ENOMATCH: no template of the effect along this
@@ -42,8 +42,8 @@ bool dig_template_range(const struct dig_effect_set *effects, enum dig_effect_id
 /// gravel that is). Where the density makes the scaled magnitude leave the range, it is held at its
 /// end. Reads 2 magnitudes of each base gravel: some ten microseconds. The plain set's and the
 /// effects' trajectories must be the same.
-DIG_MUST_CHECK enum dig_status dig_template_find(const struct dig_curve_set  *plain,
-                                                 const struct dig_effect_set *effects,
+DIG_MUST_CHECK enum dig_status dig_template_find(const struct dig_curve_set *plain,
+                                                 const struct dig_entry_set *effects,
                                                  enum dig_effect_id effect, double magnitude,
                                                  const struct dig_gravel *gravel, size_t trajectory,
                                                  struct dig_template *found);

@@ -1,12 +1,11 @@
 #include "firmware_host/config/load_model.h"
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "core/name.h"
 #include "estimator/effects/effect.h"
 #include "files/model_json.h"
 #include "files/yaml/yaml.h"
 #include "tables/load.h"
-#include "tables/load_effects.h"
 
 #include <assert.h>
 #include <math.h>
@@ -52,7 +51,7 @@ static void follow(const struct dig_curve *const before, const struct dig_curve 
 static void change_approaches(const struct dig_curve_set *const before,
                               const struct dig_curve_set *const after)
 {
-    const struct dig_approach_set *const other = after->approaches;
+    const struct dig_entry_set *const other = after->approaches;
     for (size_t i = 0; other != NULL && i < other->entries; i++) {
         size_t e = 0;
         while (e < after->entries &&
@@ -72,9 +71,9 @@ static enum dig_status change_curves(const char *const model_path, const char *c
                                      const struct dig_model *const model,
                                      struct dig_curve_set *const set, struct dig_error *const error)
 {
-    struct dig_curve_set  *plain   = NULL;
-    struct dig_effect_set *effects = NULL;
-    enum dig_status        status  = dig_table_load(table_path, &plain, error);
+    struct dig_curve_set *plain   = NULL;
+    struct dig_entry_set *effects = NULL;
+    enum dig_status       status  = dig_table_load(table_path, &plain, error);
     if (status == DIG_OK &&
         (plain->entries != set->entries || strcmp(plain->scene_hash, set->scene_hash) != 0)) {
         status = dig_error_set(error, DIG_EINVAL, "%s: it changed while it was read", table_path);
@@ -93,7 +92,7 @@ static enum dig_status change_curves(const char *const model_path, const char *c
     if (status == DIG_OK && plain != NULL) {
         change_approaches(plain, set);
     }
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     dig_curve_set_destroy(plain);
     return status;
 }

@@ -3,7 +3,7 @@
 
 #include "closed_loop/fit/common_error.h"
 #include "closed_loop/model/approach_change.h"
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "tables/load.h"
 #include "tests/testlib.h"
 
@@ -48,7 +48,7 @@ static double variance_of(const size_t t)
 
 // What an approach adds to a gravel, over its plain dig's size; noise: the variance of that.
 static void added_in(const struct dig_curve_set *const in, const size_t t,
-                     const struct dig_approach_entry *const entry, double feature[DIG_FEATURES],
+                     const struct dig_entry *const entry, double feature[DIG_FEATURES],
                      double *const noise)
 {
     struct dig_added added;
@@ -68,19 +68,19 @@ static void added_in(const struct dig_curve_set *const in, const size_t t,
 
 TEST(others_tell_a_change_but_for_the_share)
 {
-    const struct dig_approach_set *const all      = set->approaches;
-    const size_t                         n        = all->entries * all->trajectories;
-    int *const                           packings = malloc(n * sizeof *packings);
-    double                               off2     = 0.0;
-    double                               whole2   = 0.0;
-    size_t                               compared = 0;
-    struct dig_approach_set              others   = *all;
-    struct dig_curve_set                 less     = *set;
-    less.approaches                               = &others;
-    others.packings                               = packings;
+    const struct dig_entry_set *const all      = set->approaches;
+    const size_t                      n        = all->entries * all->trajectories;
+    int *const                        packings = malloc(n * sizeof *packings);
+    double                            off2     = 0.0;
+    double                            whole2   = 0.0;
+    size_t                            compared = 0;
+    struct dig_entry_set              others   = *all;
+    struct dig_curve_set              less     = *set;
+    less.approaches                            = &others;
+    others.packings                            = packings;
     assert_non_null(packings);
     for (size_t i = 0; i < all->entries; i++) {
-        const struct dig_approach_entry *const entry = &all->entry[i];
+        const struct dig_entry *const entry = &all->entry[i];
         if (fabs(entry->gravel.value[DIG_AXIS_DENSITY_kgpm3] - DENSITY) > 0.0) {
             continue;
         }

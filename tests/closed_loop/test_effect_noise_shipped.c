@@ -6,7 +6,6 @@
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/search/null_simulation.h"
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -19,7 +18,7 @@
 enum { BEDS = 2 };
 
 static struct dig_curve_set        *set;
-static struct dig_effect_set       *dug;
+static struct dig_entry_set        *dug;
 static struct dig_response_surface *surface;
 static struct dig_scatter          *scatter;
 static struct dig_soil             *soil;
@@ -27,8 +26,8 @@ static struct dig_soil             *soil;
 static int setup(void **state)
 {
     (void)state;
-    struct dig_effect_set *effects = NULL;
-    surface                        = calloc(1, sizeof *surface);
+    struct dig_entry_set *effects = NULL;
+    surface                       = calloc(1, sizeof *surface);
     const bool made =
         surface != NULL && dig_table_load(TABLE, &set, NULL) == DIG_OK &&
         dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, NULL) == DIG_OK &&
@@ -36,7 +35,7 @@ static int setup(void **state)
         dig_response_surface_fit(set, surface) == DIG_OK &&
         dig_scatter_measure(TABLE, surface, &scatter, NULL) == DIG_OK &&
         dig_soil_create(surface, effects, scatter, &soil) == DIG_OK;
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     return made ? 0 : 1;
 }
 
@@ -46,7 +45,7 @@ static int teardown(void **state)
     free(soil);
     dig_scatter_destroy(scatter);
     free(surface);
-    dig_effect_set_destroy(dug);
+    dig_entry_set_destroy(dug);
     dig_curve_set_destroy(set);
     return 0;
 }
@@ -86,7 +85,7 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
     }
 }
 
-static double u_of(const struct dig_effect_entry *const e)
+static double u_of(const struct dig_entry *const e)
 {
     return (e->magnitude - soil->absent[e->effect]) / soil->scale[e->effect];
 }
@@ -98,9 +97,9 @@ TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
     double                          squares[DIG_EFFECTS] = { 0.0 }, of[DIG_EFFECTS] = { 0.0 };
     double                          all = 0.0, features = 0.0, misfit = 0.0;
     for (size_t i = 0; i < dug->entries; i++) {
-        const struct dig_effect_entry *const e          = &dug->entry[i];
-        const struct dig_hypothesis          hypothesis = { .effects = 1, .effect = { e->effect } };
-        double                               x[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        const struct dig_entry *const e          = &dug->entry[i];
+        const struct dig_hypothesis   hypothesis = { .effects = 1, .effect = { e->effect } };
+        double                        x[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         if (!is_judged(e->effect)) {
             continue;
         }
@@ -136,11 +135,11 @@ TEST(intervals_beside_an_effect_hold)
     const struct dig_hypothesis     plain                          = { .effects = 0 };
     size_t                          held[2] = { 0, 0 }, all[2] = { 0, 0 };
     for (size_t i = 0; i < dug->entries; i++) {
-        const struct dig_effect_entry *const e      = &dug->entry[i];
-        const struct dig_hypothesis          single = { .effects = 1, .effect = { e->effect } };
-        struct dig_fitted                    fitted[2];
-        struct dig_statistic                 statistic;
-        double                               truth[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+        const struct dig_entry *const e      = &dug->entry[i];
+        const struct dig_hypothesis   single = { .effects = 1, .effect = { e->effect } };
+        struct dig_fitted             fitted[2];
+        struct dig_statistic          statistic;
+        double                        truth[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         if (!is_judged(e->effect)) {
             continue;
         }

@@ -5,7 +5,6 @@
 #include "closed_loop/model/response_surface.h"
 #include "closed_loop/verdict/trace.h"
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -32,7 +31,7 @@ static const struct layer layers[] = {
 };
 
 static struct dig_curve_set        *set;
-static struct dig_effect_set       *effects;
+static struct dig_entry_set        *effects;
 static struct dig_response_surface *surface;
 
 static int setup(void **state)
@@ -48,7 +47,7 @@ static int teardown(void **state)
 {
     (void)state;
     free(surface);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     dig_curve_set_destroy(set);
     return 0;
 }

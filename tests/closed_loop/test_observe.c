@@ -2,7 +2,7 @@
 
 #include "closed_loop/recordings/observe.h"
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "core/units.h"
 #include "tests/testlib.h"
 
@@ -114,18 +114,18 @@ TEST(a_fast_dig_is_read_as_the_tables)
 
 // The table of two digs, the first of which was made deeper and with the bucket turned, too; with
 // depths in metres of the trajectory's own.
-static struct dig_curve_set dug_otherwise(struct dig_approach_set *const others)
+static struct dig_curve_set dug_otherwise(struct dig_entry_set *const others)
 {
-    static struct dig_approach_entry entry[]    = { { .approach = { 1.2, 0.0 } },
-                                                    { .approach = { 1.0, 0.1 } } };
-    static int                       packings[] = { 1, 0, 1, 0 };
-    *others                                     = (struct dig_approach_set){ .trajectories = 2,
-                                                                             .depth_m      = { 0.02616, 0.032 },
-                                                                             .entries      = 2,
-                                                                             .entry        = entry,
-                                                                             .packings     = packings };
-    struct dig_curve_set set                    = two_digs();
-    set.approaches                              = others;
+    static struct dig_entry entry[]    = { { .approach = { 1.2, 0.0 } },
+                                           { .approach = { 1.0, 0.1 } } };
+    static int              packings[] = { 1, 0, 1, 0 };
+    *others                            = (struct dig_entry_set){ .trajectories = 2,
+                                                                 .depth_m      = { 0.02616, 0.032 },
+                                                                 .entries      = 2,
+                                                                 .entry        = entry,
+                                                                 .packings     = packings };
+    struct dig_curve_set set           = two_digs();
+    set.approaches                     = others;
     return set;
 }
 
@@ -142,7 +142,7 @@ static struct dig_recording drive_so(const struct dig_curve_set *const set, cons
 
 TEST(depth_and_attack_of_a_dig_are_told_where_the_table_has_them)
 {
-    struct dig_approach_set    others;
+    struct dig_entry_set       others;
     const struct dig_curve_set set = dug_otherwise(&others);
     struct dig_observed        o;
     struct dig_recording       r = drive_so(&set, 0, 1.1, 0.03);
@@ -171,7 +171,7 @@ TEST(depth_and_attack_of_a_dig_are_told_where_the_table_has_them)
 TEST(of_trajectories_that_differ_by_a_turn_the_nearer_is_told)
 {
     const struct dig_approach turned = { 1.0, 0.03 };
-    struct dig_approach_set   others;
+    struct dig_entry_set      others;
     struct dig_curve_set      set = dug_otherwise(&others);
     struct dig_observed       o;
     assert_int_equal(dig_approach_apply(&set.trajectory[0], 0.09, others.depth_m[0], &turned,
@@ -188,7 +188,7 @@ TEST(of_trajectories_that_differ_by_a_turn_the_nearer_is_told)
 
 TEST(what_lies_beyond_the_table_is_distance)
 {
-    struct dig_approach_set    others;
+    struct dig_entry_set       others;
     const struct dig_curve_set set = dug_otherwise(&others);
     struct dig_observed        o   = { .pace = 42.0 };
     struct dig_error           e   = { "" };

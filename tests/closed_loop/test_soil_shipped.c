@@ -1,7 +1,6 @@
 #include "closed_loop/model/soil.h"
 #include "closed_loop/model/soil_fit.h"
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tests/testlib.h"
 
 #include <math.h>
@@ -10,7 +9,7 @@
 
 // The tables that ship.
 static struct dig_curve_set        *set;
-static struct dig_effect_set       *effects;
+static struct dig_entry_set        *effects;
 static struct dig_response_surface *surface;
 static struct dig_scatter          *scatter;
 static struct dig_soil             *soil;
@@ -38,7 +37,7 @@ static int unload(void **state)
     free(soil);
     dig_scatter_destroy(scatter);
     free(surface);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     dig_curve_set_destroy(set);
     return 0;
 }
@@ -47,8 +46,8 @@ static int unload(void **state)
 // template that is right and was not fitted to it.
 static double left_of(const size_t entry, const size_t t)
 {
-    const struct dig_effect_entry *const of    = &effects->entry[entry];
-    const struct dig_curve *const        curve = &effects->curve[entry * effects->trajectories + t];
+    const struct dig_entry *const of    = &effects->entry[entry];
+    const struct dig_curve *const curve = &effects->curve[entry * effects->trajectories + t];
     double place[DIG_AXES], model[DIG_FEATURES], plain[DIG_FEATURES], bed[DIG_FEATURES];
     double amplitude[DIG_FORCE_CHANNELS], size[DIG_FORCE_CHANNELS];
     double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];

@@ -36,11 +36,11 @@ static double rms_My(const struct dig_gravel *const g)
 }
 
 struct world {
-    struct dig_curve_set   *plain, *out;
-    struct dig_effect_set   effects;
-    struct dig_effect_entry entry[ENTRIES];
-    int                     packings[ENTRIES * MADE_TRAJECTORIES];
-    struct dig_curve       *curve;
+    struct dig_curve_set *plain, *out;
+    struct dig_entry_set  effects;
+    struct dig_entry      entry[ENTRIES];
+    int                   packings[ENTRIES * MADE_TRAJECTORIES];
+    struct dig_curve     *curve;
 };
 
 static struct world *make_world(void)
@@ -51,8 +51,9 @@ static struct world *make_world(void)
     w->out                            = made_table(&options);
     w->curve                          = calloc(ENTRIES * MADE_TRAJECTORIES, sizeof *w->curve);
     for (int e = 0; e < ENTRIES; e++) {
-        w->entry[e] =
-            (struct dig_effect_entry){ beds[e].effect, beds[e].magnitude, base[beds[e].base] };
+        w->entry[e]               = (struct dig_entry){ .effect    = beds[e].effect,
+                                                        .magnitude = beds[e].magnitude,
+                                                        .gravel    = base[beds[e].base] };
         struct dig_curve *const c = &w->curve[e * MADE_TRAJECTORIES + MADE_SIMPLE_A];
         w->packings[e * MADE_TRAJECTORIES + MADE_SIMPLE_A] = 4;
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -66,11 +67,11 @@ static struct world *make_world(void)
             }
         }
     }
-    w->effects = (struct dig_effect_set){ .trajectories = MADE_TRAJECTORIES,
-                                          .entries      = ENTRIES,
-                                          .entry        = w->entry,
-                                          .packings     = w->packings,
-                                          .curve        = w->curve };
+    w->effects = (struct dig_entry_set){ .trajectories = MADE_TRAJECTORIES,
+                                         .entries      = ENTRIES,
+                                         .entry        = w->entry,
+                                         .packings     = w->packings,
+                                         .curve        = w->curve };
     return w;
 }
 

@@ -3,7 +3,7 @@
 
 #include "firmware_host/config/load_model.h"
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "files/model_json.h"
 #include "tests/tables_fixture.h"
 
@@ -84,7 +84,7 @@ TEST(digs_made_otherwise_change_as_the_plain_ones_do)
     apply(&model, "ways.sqlite", set);
     dig_model_finish(&model);
     assert_ptr_equal(set->covariance, covariance); // relative to the curves, as they are now
-    const struct dig_approach_set *const other = set->approaches;
+    const struct dig_entry_set *const other = set->approaches;
     assert_int_equal(other->entries, 2);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double more = 1.0 + share(k);

@@ -7,7 +7,7 @@
 #include "tests/paper/digs.h"
 
 #include "closed_loop/accuracy/score.h"
-#include "tables/load_effects.h"
+#include "tables/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -125,17 +125,17 @@ static void tell_shapes(const struct paper_table *const table, const char *const
 static enum dig_status tell_effects(const struct paper_table *const table, const char *const path,
                                     const char *const out, struct dig_error *const error)
 {
-    const size_t           actual = paper_trajectory(table, "actual");
-    struct dig_effect_set *set    = NULL;
-    const enum dig_status  status = dig_effects_load(path, table->set, &set, error);
+    const size_t          actual = paper_trajectory(table, "actual");
+    struct dig_entry_set *set    = NULL;
+    const enum dig_status status = dig_effects_load(path, table->set, &set, error);
     if (status != DIG_OK || set == NULL) {
         return status;
     }
     for (size_t e = 0; e < set->entries; e++) {
-        const struct dig_effect_entry *const x  = &set->entry[e];
-        const size_t                         at = e * set->trajectories + actual;
-        double                               mean_Nm[DIG_CURVE_POINTS];
-        char                                 name[96];
+        const struct dig_entry *const x  = &set->entry[e];
+        const size_t                  at = e * set->trajectories + actual;
+        double                        mean_Nm[DIG_CURVE_POINTS];
+        char                          name[96];
         (void)snprintf(name, sizeof name, "%s_%g_%g_%g_%g", dig_effect_name(x->effect),
                        x->magnitude, x->gravel.value[0], x->gravel.value[1], x->gravel.value[2]);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -146,7 +146,7 @@ static enum dig_status tell_effects(const struct paper_table *const table, const
             paper_write_curve(out, name, table, actual, mean_Nm);
         }
     }
-    dig_effect_set_destroy(set);
+    dig_entry_set_destroy(set);
     return DIG_OK;
 }
 

@@ -3,7 +3,7 @@
 
 #include "tables/density_scale.h"
 
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "tests/tables_fixture.h"
 
 static void make_table(const char *const name, const struct dig_scene *const scene)
@@ -59,8 +59,8 @@ TEST_WITH(so_do_digs_made_in_another_way, scratch_setup, scratch_teardown)
 {
     const struct dig_scene scene = scaling_scene();
     make_table("deeper.sqlite", &scene);
-    struct dig_curve_set *const          set   = fixture_load("deeper.sqlite");
-    const struct dig_approach_set *const other = set->approaches;
+    struct dig_curve_set *const       set   = fixture_load("deeper.sqlite");
+    const struct dig_entry_set *const other = set->approaches;
     assert_non_null(other);
     assert_int_equal(other->entries, 6);
     for (size_t i = 0; i < 6; i++) {

@@ -3,10 +3,9 @@
 #include "tables/export.h"
 
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tests/tables_fixture.h"
 
-static struct dig_effect_set *effects;
+static struct dig_entry_set *effects;
 
 static struct dig_curve_set *example(void)
 {
@@ -21,7 +20,7 @@ static struct dig_curve_set *example(void)
     assert_int_equal(dig_store_put(store, &varied, &recording, NULL), DIG_OK);
     dig_store_close(store);
     struct dig_curve_set *set = NULL;
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     assert_int_equal(dig_table_list(scratch_path("example.sqlite"), &set, &effects, NULL), DIG_OK);
     (void)unlink(scratch_path("example.sqlite"));
     return set;
@@ -178,7 +177,7 @@ TEST(the_plot_shows_the_mean_in_every_column)
 
 static int free_effects(void **state)
 {
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     return scratch_teardown(state);
 }
 

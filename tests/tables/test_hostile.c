@@ -31,7 +31,7 @@ static void assert_refused(const char *const path, const char *const says)
     const struct dig_scene       scene   = fixture_scene();
     const struct dig_run_visitor visitor = { pass_over, NULL };
     struct dig_curve_set        *set     = NULL;
-    struct dig_effect_set       *effects = NULL;
+    struct dig_entry_set        *effects = NULL;
     struct dig_store            *store   = NULL;
     struct dig_error             error   = { "" };
     assert_int_not_equal(dig_table_list(path, &set, &effects, &error), DIG_OK);

@@ -1,12 +1,11 @@
-// Tests for tables/load_approaches.c, upgrade.c and listed.c: digs at another depth or attack in a
+// Tests for tables/load_file.c, upgrade.c and listed.c: digs at another depth or attack in a
 // table, and tables from before there were any.
 
-#include "tables/load_approaches.h"
+#include "tables/load.h"
 
 #include "core/units.h"
 #include "files/scene_yaml.h"
 #include "tables/listed.h"
-#include "tables/load.h"
 #include "tables/merge.h"
 #include "tests/tables_fixture.h"
 
@@ -38,7 +37,7 @@ TEST_WITH(turned_digs_stand_beside_the_plain_ones, scratch_setup, scratch_teardo
     struct dig_curve_set *const set = fixture_load("both.sqlite");
     assert_int_equal(set->entries, 2);
     assert_close((double)set->curve[0].mean[0][100], 1.2, 1e-6);
-    const struct dig_approach_set *const other = set->approaches;
+    const struct dig_entry_set *const other = set->approaches;
     assert_non_null(other);
     assert_int_equal(other->entries, 3);
     static const struct {

@@ -1,8 +1,7 @@
-// Tests for tables/load_effects.c: what was dug with an effect, and what was not.
-
-#include "tables/load_effects.h"
+// Tests for tables/load_file.c: what was dug with an effect, and what was not.
 
 #include "tables/load.h"
+
 #include "tests/tables_fixture.h"
 
 static void put_varied(struct dig_store *const store, const double friction,
@@ -17,8 +16,8 @@ static void make_table(const char *const name)
 {
     struct dig_store *const store = fixture_create(name);
     fixture_put(store, .3, .5, 0, 0, 1.0);
-    put_varied(store, .9, "polydispersity", 1.5, 0, 0, 5.0);
-    put_varied(store, .3, "polydispersity", 1.5, 0, 0, 4.0);
+    put_varied(store, .9, "adhesion", 1.5, 0, 0, 5.0);
+    put_varied(store, .3, "adhesion", 1.5, 0, 0, 4.0);
     put_varied(store, .3, "cohesion", 20, 0, 0, 3.0);
     put_varied(store, .3, "cohesion", 5, 0, 0, 2.0);
     put_varied(store, .3, "cohesion", 5, 1, 0, 2.5);
@@ -34,8 +33,8 @@ TEST(effects_are_apart_from_what_is_plain)
     assert_int_equal(plain->packings[0], 1);
     assert_close((double)plain->curve[0].mean[0][100], 1.0, 1e-6);
 
-    struct dig_effect_set *set   = NULL;
-    struct dig_error       error = { "" };
+    struct dig_entry_set *set   = NULL;
+    struct dig_error      error = { "" };
     if (dig_effects_load(scratch_path("both.sqlite"), plain, &set, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
@@ -50,8 +49,8 @@ TEST(effects_are_apart_from_what_is_plain)
     } expected[] = {
         { DIG_EFFECT_COHESION, .3, 5, 2.25, { 2, 1 } },
         { DIG_EFFECT_COHESION, .3, 20, 3.0, { 1, 0 } },
-        { DIG_EFFECT_POLYDISPERSITY, .3, 1.5, 4.0, { 1, 0 } },
-        { DIG_EFFECT_POLYDISPERSITY, .9, 1.5, 5.0, { 1, 0 } },
+        { DIG_EFFECT_ADHESION, .3, 1.5, 4.0, { 1, 0 } },
+        { DIG_EFFECT_ADHESION, .9, 1.5, 5.0, { 1, 0 } },
     };
     for (size_t i = 0; i < 4; i++) {
         assert_int_equal(set->entry[i].effect, expected[i].effect);
@@ -66,8 +65,8 @@ TEST(effects_are_apart_from_what_is_plain)
     }
     // One packing takes the relative spread of those with two: sqrt(.125) of 2.25.
     assert_close((double)set->curve[2 * 2].sd[0][50], 4.0 * sqrt(.125) / 2.25, 1e-5);
-    dig_effect_set_destroy(set);
-    dig_effect_set_destroy(NULL);
+    dig_entry_set_destroy(set);
+    dig_entry_set_destroy(NULL);
     dig_curve_set_destroy(plain);
 }
 
@@ -76,20 +75,20 @@ TEST(a_table_of_effects_alone_is_no_table_of_curves)
     struct dig_store *const store = fixture_create("alone.sqlite");
     put_varied(store, .3, "cohesion", 5, 0, 0, 2.0);
     dig_store_close(store);
-    struct dig_curve_set  *plain   = NULL;
-    struct dig_effect_set *effects = NULL;
-    struct dig_error       error   = { "" };
+    struct dig_curve_set *plain   = NULL;
+    struct dig_entry_set *effects = NULL;
+    struct dig_error      error   = { "" };
     assert_int_equal(dig_table_load(scratch_path("alone.sqlite"), &plain, &error), DIG_EINVAL);
     assert_contains(error.text, "ground: no rows without an effect");
     assert_null(plain);
     assert_int_equal(dig_table_list(scratch_path("alone.sqlite"), &plain, &effects, NULL), DIG_OK);
     assert_int_equal(plain->entries, 0);
     assert_int_equal(effects->entries, 1);
-    struct dig_effect_set *beside = NULL;
+    struct dig_entry_set *beside = NULL;
     assert_int_equal(dig_effects_load(scratch_path("alone.sqlite"), plain, &beside, NULL), DIG_OK);
     assert_int_equal(beside->entries, 1);
-    dig_effect_set_destroy(beside);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(beside);
+    dig_entry_set_destroy(effects);
     dig_curve_set_destroy(plain);
 }
 
@@ -105,7 +104,7 @@ TEST(what_does_not_belong_together_is_refused)
     dig_store_close(store);
 
     struct dig_curve_set *const plain = fixture_load("mine.sqlite");
-    struct dig_effect_set      *set   = NULL;
+    struct dig_entry_set       *set   = NULL;
     struct dig_error            error = { "" };
     assert_int_equal(dig_effects_load(scratch_path("theirs.sqlite"), plain, &set, &error),
                      DIG_EINVAL);

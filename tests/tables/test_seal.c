@@ -18,11 +18,11 @@ static void make_sealed(const char *const name)
 
 static enum dig_status try_load(const char *const path, struct dig_error *const error)
 {
-    struct dig_curve_set  *set     = NULL;
-    struct dig_effect_set *effects = NULL;
-    const enum dig_status  status  = dig_table_list(path, &set, &effects, error);
+    struct dig_curve_set *set     = NULL;
+    struct dig_entry_set *effects = NULL;
+    const enum dig_status status  = dig_table_list(path, &set, &effects, error);
     dig_curve_set_destroy(set);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     return status;
 }
 

@@ -6,7 +6,7 @@
 #include "closed_loop/verdict/trace.h"
 #include "core/approach.h"
 #include "core/curve.h"
-#include "core/effect_set.h"
+#include "core/entry_set.h"
 #include "core/error.h"
 
 #include <stdbool.h>
@@ -67,10 +67,10 @@ DIG_MUST_CHECK enum dig_status digloop_save_model(const struct digloop_job *job,
 
 /// The table of effects asked for, or the one beside the table if there is one; path names it, ""
 /// when there is none: then it says so on standard error and leaves *effects. Free with
-/// dig_effect_set_destroy().
+/// dig_entry_set_destroy().
 DIG_MUST_CHECK enum dig_status digloop_load_effects(const struct digloop_job *job,
-                                                    char                    path[DIGLOOP_PATH_SIZE],
-                                                    struct dig_effect_set **effects,
-                                                    struct dig_error       *error);
+                                                    char                   path[DIGLOOP_PATH_SIZE],
+                                                    struct dig_entry_set **effects,
+                                                    struct dig_error      *error);
 
 #endif // DIG_TOOLS_DIGLOOP_COMMANDS_H

@@ -3,7 +3,7 @@
 #include "closed_loop/design/design.h"
 
 #include "closed_loop/report/design_report.h"
-#include "tables/load_effects.h"
+#include "tables/load.h"
 #include "tools/digloop/commands.h"
 
 #include <stdlib.h>
@@ -14,9 +14,9 @@ static enum dig_status make_soil(const struct digloop_job *const          job,
                                  const struct dig_scatter *const          scatter,
                                  struct dig_soil **const soil, struct dig_error *const error)
 {
-    char                   path[DIGLOOP_PATH_SIZE];
-    struct dig_effect_set *effects = NULL;
-    enum dig_status        status  = digloop_load_effects(job, path, &effects, error);
+    char                  path[DIGLOOP_PATH_SIZE];
+    struct dig_entry_set *effects = NULL;
+    enum dig_status       status  = digloop_load_effects(job, path, &effects, error);
     if (status == DIG_OK) {
         status = dig_soil_create(surface, effects, scatter, soil);
         if (status != DIG_OK) {
@@ -24,7 +24,7 @@ static enum dig_status make_soil(const struct digloop_job *const          job,
                                 dig_status_str(status));
         }
     }
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     return status;
 }
 

@@ -5,7 +5,7 @@
 #include "core/text.h"
 #include "estimator/effects/effect.h"
 #include "files/text/whole.h"
-#include "tables/load_effects.h"
+#include "tables/load.h"
 #include "tools/digloop/campaign.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/next_table.h"
@@ -41,7 +41,7 @@ static void say_without_beds(const char *const path)
 
 enum dig_status digloop_load_effects(const struct digloop_job *const job,
                                      char                            path[const DIGLOOP_PATH_SIZE],
-                                     struct dig_effect_set **const   effects,
+                                     struct dig_entry_set **const    effects,
                                      struct dig_error *const         error)
 {
     struct stat found;
@@ -102,7 +102,7 @@ static enum dig_status write_results(const struct digloop_job *const job, const 
 enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_error *const error)
 {
     char                    path[DIGLOOP_PATH_SIZE];
-    struct dig_effect_set  *effects  = NULL;
+    struct dig_entry_set   *effects  = NULL;
     struct digloop_campaign campaign = { .digs = 0 };
     struct dig_trace       *trace    = calloc(1, sizeof *trace);
     enum dig_status         status   = trace != NULL ? DIG_OK : DIG_ENOMEM;
@@ -135,6 +135,6 @@ enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_er
     }
     free(trace);
     digloop_campaign_finish(&campaign);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     return status;
 }

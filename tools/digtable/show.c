@@ -7,7 +7,6 @@
 #include "tables/export.h"
 #include "tables/listed.h"
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tables/scene.h"
 #include "tables/store.h"
 #include "tools/digtable/commands.h"
@@ -33,10 +32,10 @@ static int with_output(const struct dig_arguments *const a,
 
 int dig_cli_list(const struct dig_arguments *const a)
 {
-    struct dig_error       error   = { "" };
-    struct dig_curve_set  *set     = NULL;
-    struct dig_effect_set *effects = NULL;
-    const enum dig_status  status  = dig_table_list(a->positional[0], &set, &effects, &error);
+    struct dig_error      error   = { "" };
+    struct dig_curve_set *set     = NULL;
+    struct dig_entry_set *effects = NULL;
+    const enum dig_status status  = dig_table_list(a->positional[0], &set, &effects, &error);
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
@@ -45,7 +44,7 @@ int dig_cli_list(const struct dig_arguments *const a)
     } else {
         dig_export_list(set, effects, stdout);
     }
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     dig_curve_set_destroy(set);
     return EXIT_DONE;
 }
@@ -229,9 +228,9 @@ int dig_cli_show(const struct dig_arguments *const a)
 }
 
 struct curves_to_write {
-    bool                   varied;
-    struct dig_curve_set  *set;
-    struct dig_effect_set *effects;
+    bool                  varied;
+    struct dig_curve_set *set;
+    struct dig_entry_set *effects;
 };
 
 static enum dig_status write_curves(void *const context, FILE *const file,
@@ -273,7 +272,7 @@ int dig_cli_export(const struct dig_arguments *const a)
         return dig_cli_bad_input(status, &error);
     }
     const int code = with_output(a, write_curves, &curves);
-    dig_effect_set_destroy(curves.effects);
+    dig_entry_set_destroy(curves.effects);
     dig_curve_set_destroy(curves.set);
     return code;
 }

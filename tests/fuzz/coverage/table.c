@@ -5,7 +5,6 @@
 // odd length is not.
 
 #include "tables/load.h"
-#include "tables/load_effects.h"
 #include "tables/schema/seal.h"
 #include "tables/store.h"
 #include "tests/fuzz/coverage/as_file.h"
@@ -151,12 +150,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
     const char *const path = as_file(patched, good_size);
     patch_cells_and_seal(path, data, size);
 
-    struct dig_error       error   = { "" };
-    struct dig_curve_set  *set     = NULL;
-    struct dig_effect_set *effects = NULL;
-    const enum dig_status  status  = dig_table_list(path, &set, &effects, &error);
+    struct dig_error      error   = { "" };
+    struct dig_curve_set *set     = NULL;
+    struct dig_entry_set *effects = NULL;
+    const enum dig_status status  = dig_table_list(path, &set, &effects, &error);
     expect_word(status, &error);
     dig_curve_set_destroy(set);
-    dig_effect_set_destroy(effects);
+    dig_entry_set_destroy(effects);
     return 0;
 }
