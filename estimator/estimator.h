@@ -11,10 +11,10 @@
 
 #include "core/curve.h"
 #include "core/machine.h"
+#include "core/observation.h"
 #include "core/sample.h"
 #include "core/status.h"
 #include "estimator/track/estimate.h"
-#include "estimator/track/observation.h"
 #include "estimator/track/settings.h"
 
 #include <stdbool.h>

@@ -19,9 +19,13 @@ struct dig_text {
     struct force_text      *force; // NULL: not measured
 };
 
+#define SAMPLES_MAX 64 // the first DIG_MATCH_SAMPLES are taken
+
 // Attacks in degrees, depth 0: not given.
 struct identity_text {
-    struct dig_identity identity;
+    struct dig_identity identity; // but for the samples
+    size_t              samples;
+    struct dig_gravel   sample[SAMPLES_MAX];
     struct dig_gravel  *weighted_nearest; // NULL: from before there was one
     struct dig_text     recorded[DIG_IDENTITY_DIGS_MAX];
 };
@@ -39,46 +43,45 @@ static const cyaml_schema_field_t force_fields[] = {
 
 static const cyaml_schema_field_t dig_fields[] = {
     CYAML_FIELD_STRING("trajectory", REQUIRED, struct dig_text, dig.trajectory, 1),
-    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_text, dig.first),
-    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_text, dig.last),
-    NUMBERS("moment_Nm", REQUIRED, dig_text, dig.moment_Nm),
-    NUMBERS("sigma_Nm", REQUIRED, dig_text, dig.sigma_Nm),
-    NUMBER_PERHAPS("depth", dig_text, dig.approach.depth),
-    NUMBER_PERHAPS("attack_deg", dig_text, dig.approach.attack_rad),
+    CYAML_FIELD_FLOAT("first", REQUIRED, struct dig_text, dig.seen.first),
+    CYAML_FIELD_FLOAT("last", REQUIRED, struct dig_text, dig.seen.last),
+    NUMBERS("moment_Nm", REQUIRED, dig_text, dig.seen.moment_Nm),
+    NUMBERS("sigma_Nm", REQUIRED, dig_text, dig.seen.sigma_Nm),
+    NUMBER_PERHAPS("depth", dig_text, dig.seen.approach.depth),
+    NUMBER_PERHAPS("attack_deg", dig_text, dig.seen.approach.attack_rad),
     CYAML_FIELD_MAPPING_PTR("force", OPTIONAL, struct dig_text, force, force_fields),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_value_t recorded = ENTRY(dig_text, dig_fields);
 
-#define GRAVEL(name)                                                                               \
-    CYAML_FIELD_MAPPING(#name, REQUIRED, struct identity_text, identity.name, dig_yaml_gravel)
-#define DISTANCE(name) CYAML_FIELD_FLOAT(#name, REQUIRED, struct identity_text, identity.name)
+#define GRAVEL(name, member)                                                                       \
+    CYAML_FIELD_MAPPING(name, REQUIRED, struct identity_text, identity.member, dig_yaml_gravel)
+#define DISTANCE(name) CYAML_FIELD_FLOAT(#name, REQUIRED, struct identity_text, identity.match.name)
 
 static const cyaml_schema_field_t fields[] = {
     CYAML_FIELD_STRING("scene_hash", REQUIRED, struct identity_text, identity.scene_hash, 64),
     CYAML_FIELD_STRING("trajectory", REQUIRED, struct identity_text, identity.trajectory, 1),
-    CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, identity.digs),
-    CYAML_FIELD_BOOL("forces", OPTIONAL, struct identity_text, identity.forces),
+    CYAML_FIELD_UINT("digs", REQUIRED, struct identity_text, identity.match.digs),
+    CYAML_FIELD_BOOL("forces", OPTIONAL, struct identity_text, identity.match.forces),
     NUMBER_PERHAPS("depth", identity_text, identity.made.depth),
     NUMBER_PERHAPS("attack_deg", identity_text, identity.made.attack_rad),
     NUMBER_PERHAPS("matched_depth", identity_text, identity.matched.depth),
     NUMBER_PERHAPS("matched_attack_deg", identity_text, identity.matched.attack_rad),
-    GRAVEL(gravel),
-    GRAVEL(mean),
-    GRAVEL(low),
-    GRAVEL(high),
-    GRAVEL(nearest),
+    GRAVEL("gravel", match.gravel),
+    GRAVEL("mean", match.mean),
+    GRAVEL("low", match.low),
+    GRAVEL("high", match.high),
+    GRAVEL("nearest", nearest),
     CYAML_FIELD_MAPPING_PTR("weighted_nearest", OPTIONAL, struct identity_text, weighted_nearest,
                             dig_yaml_gravel),
-    NUMBER_PERHAPS("weighted_distance", identity_text, identity.weighted_distance),
+    NUMBER_PERHAPS("weighted_distance", identity_text, identity.match.weighted_distance),
     DISTANCE(distance),
     DISTANCE(nearest_distance),
     DISTANCE(noise_floor),
-    CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, identity.outside),
+    CYAML_FIELD_BOOL("outside", REQUIRED, struct identity_text, identity.match.outside),
     CYAML_FIELD_BOOL("family", OPTIONAL, struct identity_text, identity.family),
-    LIST("samples", REQUIRED, identity_text, identity.sample, identity.samples, &sample, 0,
-         DIG_IDENTITY_SAMPLES_MAX),
+    LIST("samples", REQUIRED, identity_text, sample, samples, &sample, 0, SAMPLES_MAX),
     LIST("recorded", OPTIONAL, identity_text, recorded, identity.recorded, &recorded, 0,
          DIG_IDENTITY_DIGS_MAX),
     CYAML_FIELD_END,
@@ -111,17 +114,18 @@ static bool is_approach(const struct dig_approach *const approach)
            fabs(normalized.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad;
 }
 
-static bool is_dig(const struct dig_identity_dig *const dig)
+static bool is_dig(const struct dig_observation *const dig)
 {
-    return dig_name_ok(dig->trajectory) && is_approach(&dig->approach) && dig->first >= 0.0 &&
-           dig->last > dig->first && dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
+    return is_approach(&dig->approach) && dig->first >= 0.0 && dig->last > dig->first &&
+           dig->last <= 1.0 && is_curve(dig->moment_Nm, dig->sigma_Nm) &&
            is_curve(dig->force_N[0], dig->force_sigma_N[0]) &&
            is_curve(dig->force_N[1], dig->force_sigma_N[1]);
 }
 
-static void take_dig(const struct dig_text *const text, struct dig_identity_dig *const dig)
+static void take_dig(const struct dig_text *const text, struct dig_identity_dig *const named)
 {
-    *dig = text->dig;
+    *named                            = text->dig;
+    struct dig_observation *const dig = &named->seen;
     dig->approach.attack_rad *= DIG_RAD_PER_DEG;
     dig->forces = text->force != NULL;
     if (dig->forces) {
@@ -166,18 +170,24 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     if (!(read.matched.depth > 0.0)) {
         read.matched = read.made;
     }
-    read.weighted = text->weighted_nearest != NULL;
-    if (read.weighted) {
+    struct dig_match *const m = &read.match;
+    m->valid                  = true;
+    m->weighted               = text->weighted_nearest != NULL ? 0 : -1;
+    m->samples = text->samples < DIG_MATCH_SAMPLES ? text->samples : DIG_MATCH_SAMPLES;
+    memcpy(m->sample, text->sample, m->samples * sizeof m->sample[0]);
+    if (text->weighted_nearest != NULL) {
         read.weighted_nearest = *text->weighted_nearest;
+    } else {
+        m->weighted_distance = (double)NAN;
     }
-    if (status == DIG_OK && read.weighted &&
-        !(is_gravel(&read.weighted_nearest) && read.weighted_distance >= 0.0)) {
+    if (status == DIG_OK && m->weighted >= 0 &&
+        !(is_gravel(&read.weighted_nearest) && m->weighted_distance >= 0.0)) {
         status = dig_yaml_refuse(path, error,
                                  "weighted_nearest: no gravel, expected friction and rolling >= 0, "
                                  "density > 0, with a weighted_distance >= 0");
     }
-    for (size_t i = 0; i < read.samples && status == DIG_OK; i++) {
-        if (!is_gravel(&read.sample[i])) {
+    for (size_t i = 0; i < text->samples && status == DIG_OK; i++) {
+        if (!is_gravel(&text->sample[i])) {
             status = dig_yaml_refuse(
                 path, error,
                 "samples: the %zu-th is no gravel, expected friction and rolling >= 0, density > 0",
@@ -190,14 +200,14 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
     }
     for (size_t i = 0; i < read.recorded && status == DIG_OK; i++) {
         take_dig(&text->recorded[i], &read.recording[i]);
-        if (!is_dig(&read.recording[i])) {
+        if (!dig_name_ok(read.recording[i].trajectory) || !is_dig(&read.recording[i].seen)) {
             status = dig_yaml_refuse(path, error,
                                      "recorded: the %zu-th is no dig, expected a name, 0 <= first "
                                      "< last <= 1, finite moments and forces, sigmas >= 0",
                                      i + 1);
         }
     }
-    if (status == DIG_OK && !is_gravel(&read.gravel)) {
+    if (status == DIG_OK && !is_gravel(&m->gravel)) {
         status = dig_yaml_refuse(
             path, error, "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
     }

@@ -4,49 +4,33 @@
 #ifndef DIG_FILES_IDENTITY_JSON_H
 #define DIG_FILES_IDENTITY_JSON_H
 
-#include "core/approach.h"
-#include "core/curve.h"
 #include "core/error.h"
+#include "core/gravel_match.h"
+#include "core/observation.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 
-#define DIG_IDENTITY_SAMPLES_MAX 64
-#define DIG_IDENTITY_DIGS_MAX    8
+#define DIG_IDENTITY_DIGS_MAX 8
 
-/// A dig it was identified from, as it was observed (docs/numerics/estimator.md): rig scale, on the
-/// table's grid of progress, 0 where nothing was measured.
+/// A dig it was identified from. The file names its trajectory: the observation's is 0 when read,
+/// and so is all that is kept of no dig (count, ending, how it was made, distance from the path).
 struct dig_identity_dig {
-    char                trajectory[DIG_NAME_SIZE];
-    struct dig_approach approach;    // how it was dug; zeroed: as the trajectory stands
-    double              first, last; // progress that was measured
-    double              moment_Nm[DIG_CURVE_POINTS];
-    double              sigma_Nm[DIG_CURVE_POINTS];
-    bool                forces; // the forces were measured, too: Fx and Fz, below; else 0
-    double              force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
-    double              force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    char                   trajectory[DIG_NAME_SIZE];
+    struct dig_observation seen;
 };
 
+/// The file knows the table's entries by their gravel. When read, the match is valid, its `nearest`
+/// is 0, and its `weighted` 0 where there is one; mode, untold and outside_floors are not kept.
 struct dig_identity {
     char                scene_hash[65];            // of the table it was identified with
     char                trajectory[DIG_NAME_SIZE]; // of the dig it was identified on
-    size_t              digs;                      // how many were pooled
-    bool                forces;  // matched by moment and forces; else by the moment
     struct dig_approach made;    // how that dig was made, from its own path; depth 0: not known
     struct dig_approach matched; // the nearest to that the table knows; zeroed: the plain one
-    struct dig_gravel   gravel;  // between the grid points
-    struct dig_gravel   mean, low, high;   // posterior mean and 5 %, 95 % of each axis
-    struct dig_gravel   nearest;           // entry of the table
-    double              distance;          // relative Euclidean norm to the fitted curve
-    double              nearest_distance;  // to the nearest entry
-    bool                weighted;          // the next two are known
-    struct dig_gravel   weighted_nearest;  // entry nearest by the noise-weighted distance,
-    double              weighted_distance; // which is expected to be 1
-    double              noise_floor;       // what another packing would be away
-    bool                outside;           // none of the table's gravels
-    bool                family;            // the digs do not resolve an axis: one of a family
-    size_t              samples;           // gravels that stand for the posterior
-    struct dig_gravel   sample[DIG_IDENTITY_SAMPLES_MAX];
+    struct dig_match    match;
+    struct dig_gravel   nearest;          // entry of the table
+    struct dig_gravel   weighted_nearest; // and by the noise-weighted distance; match.weighted >= 0
+    bool                family;           // the digs do not resolve an axis: one of a family
     // The last of the digs, oldest first, for who goes on with them; 0: they are not kept.
     size_t                  recorded;
     struct dig_identity_dig recording[DIG_IDENTITY_DIGS_MAX];

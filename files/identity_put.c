@@ -37,7 +37,7 @@ static void put_numbers(FILE *const to, const char *const before, const char *co
     (void)fputs("]", to);
 }
 
-static void put_forces(FILE *const to, const struct dig_identity_dig *const dig)
+static void put_forces(FILE *const to, const struct dig_observation *const dig)
 {
     put_numbers(to, ",\n   \"force\": {", "x_N", dig->force_N[0]);
     put_numbers(to, ",", "z_N", dig->force_N[1]);
@@ -54,10 +54,11 @@ static void put_approach(FILE *const to, const char *const prefix,
                   normalized.attack_rad / DIG_RAD_PER_DEG);
 }
 
-static void put_dig(FILE *const to, const struct dig_identity_dig *const dig)
+static void put_dig(FILE *const to, const struct dig_identity_dig *const named)
 {
+    const struct dig_observation *const dig = &named->seen;
     (void)fputs("{\"trajectory\": ", to);
-    dig_text_put_json(to, dig->trajectory);
+    dig_text_put_json(to, named->trajectory);
     (void)fprintf(to, ", \"first\": %.9g, \"last\": %.9g", dig->first, dig->last);
     if (!dig_approach_is_plain(&dig->approach)) {
         (void)fputs(", ", to);
@@ -91,28 +92,29 @@ static void put_made(FILE *const to, const struct dig_identity *const identity)
 void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
 {
     assert(to != NULL && identity != NULL);
+    const struct dig_match *const match = &identity->match;
     (void)fprintf(to, "{\"scene_hash\": \"%s\",\n \"trajectory\": ", identity->scene_hash);
     dig_text_put_json(to, identity->trajectory);
-    (void)fprintf(to, ", \"digs\": %zu, \"forces\": %s,\n ", identity->digs,
-                  identity->forces ? "true" : "false");
+    (void)fprintf(to, ", \"digs\": %zu, \"forces\": %s,\n ", match->digs,
+                  match->forces ? "true" : "false");
     put_made(to, identity);
-    put_named(to, "gravel", &identity->gravel);
-    put_named(to, "mean", &identity->mean);
-    put_named(to, "low", &identity->low);
-    put_named(to, "high", &identity->high);
+    put_named(to, "gravel", &match->gravel);
+    put_named(to, "mean", &match->mean);
+    put_named(to, "low", &match->low);
+    put_named(to, "high", &match->high);
     put_named(to, "nearest", &identity->nearest);
-    if (identity->weighted) {
+    if (match->weighted >= 0) {
         put_named(to, "weighted_nearest", &identity->weighted_nearest);
-        (void)fprintf(to, "\"weighted_distance\": %.9g, ", identity->weighted_distance);
+        (void)fprintf(to, "\"weighted_distance\": %.9g, ", match->weighted_distance);
     }
     (void)fprintf(to,
                   "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
                   "\"outside\": %s, \"family\": %s,\n \"samples\": [",
-                  identity->distance, identity->nearest_distance, identity->noise_floor,
-                  identity->outside ? "true" : "false", identity->family ? "true" : "false");
-    for (size_t i = 0; i < identity->samples; i++) {
+                  match->distance, match->nearest_distance, match->noise_floor,
+                  match->outside ? "true" : "false", identity->family ? "true" : "false");
+    for (size_t i = 0; i < match->samples; i++) {
         (void)fputs(i == 0 ? "" : ",\n  ", to);
-        put_gravel(to, &identity->sample[i]);
+        put_gravel(to, &match->sample[i]);
     }
     (void)fputs(identity->recorded > 0 ? "],\n \"recorded\": [" : "]", to);
     for (size_t i = 0; i < identity->recorded; i++) {

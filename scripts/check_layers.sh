@@ -22,23 +22,22 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # is its roof. Behind each the headers that other folders may include, and after | those that only the rooms above
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
-core                   approach bed bed_plan command_line contact curve did_you_mean effect entry_set
-                       error geometry ground help linkage log_normal machine model name part recording regular
-                       sample scene sha256 shell similar sort status table_step text units vec2
+core                   approach bed bed_plan command_line contact curve did_you_mean effect entry_set error geometry
+                       gravel_match ground help linkage log_normal machine model name observation part recording
+                       regular sample scene sha256 shell similar sort status table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
-files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json job_plan machine_yaml
-                       model_json
+files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json job_plan machine_yaml model_json
                        recording_csv scene_yaml
 estimator              estimator estimator_tick
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
-estimator/track        inertia_error observation phase recorded_dig route settings track window | abort_detection
-                       ending estimate followed motion
+estimator/track        inertia_error phase recorded_dig route settings track window | abort_detection ending estimate
+                       followed motion
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
                        approach_response interpolate live_recording observe_dig | laid
 estimator/effects      effect template
-estimator/match        depth gravel_match match pool prefilter | entry_scatter
+estimator/match        depth match pool prefilter | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
 tables/schema          | canonical_scene schema seal
 tables                 derive export listed load merge queue scene store
@@ -52,8 +51,7 @@ offline_dem/device     engine_cuda | device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
 closed_loop/numeric    | chance dense levenberg vectors
-closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise
-                       regressors
+closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise regressors
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs
 closed_loop/machine    machine_check machine_side | machine_lines machine_motion machine_side_private

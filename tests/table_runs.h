@@ -4,7 +4,7 @@
 #define DIG_TESTS_TABLE_RUNS_H
 
 #include "core/error.h"
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 #include "tables/derive.h"
 #include "tables/load.h"
 #include "tables/store.h"

@@ -4,8 +4,8 @@
 #ifndef DIG_ESTIMATOR_APPROACH_APPROACH_SLOTS_H
 #define DIG_ESTIMATOR_APPROACH_APPROACH_SLOTS_H
 
+#include "core/observation.h"
 #include "estimator/approach/approached.h"
-#include "estimator/track/observation.h"
 
 #include <stdbool.h>
 

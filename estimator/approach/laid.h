@@ -8,7 +8,7 @@
 #define DIG_ESTIMATOR_APPROACH_LAID_H
 
 #include "core/curve.h"
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 
 /// For each point of the path at one depth, its place (0 … DIG_CURVE_POINTS - 1) on the path at
 /// another; negative before that one's start.

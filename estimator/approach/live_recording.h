@@ -4,8 +4,8 @@
 #ifndef DIG_ESTIMATOR_APPROACH_LIVE_RECORDING_H
 #define DIG_ESTIMATOR_APPROACH_LIVE_RECORDING_H
 
+#include "core/observation.h"
 #include "estimator/track/estimate.h"
-#include "estimator/track/observation.h"
 #include "estimator/track/recorded_dig.h"
 #include "estimator/track/settings.h"
 

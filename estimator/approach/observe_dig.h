@@ -5,7 +5,7 @@
 #define DIG_ESTIMATOR_APPROACH_OBSERVE_DIG_H
 
 #include "core/curve.h"
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 #include "estimator/track/recorded_dig.h"
 #include "estimator/track/settings.h"
 

@@ -13,8 +13,8 @@
 #define DIG_ESTIMATOR_MATCH_DEPTH_H
 
 #include "core/curve.h"
+#include "core/observation.h"
 #include "estimator/approach/approach_error.h"
-#include "estimator/track/observation.h"
 
 #include <stddef.h>
 

@@ -6,8 +6,8 @@
 #define DIG_ESTIMATOR_MATCH_MATCH_H
 
 #include "core/curve.h"
-#include "estimator/match/gravel_match.h"
-#include "estimator/track/observation.h"
+#include "core/gravel_match.h"
+#include "core/observation.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
 #define DIG_ESTIMATOR_MATCH_POOL_H
 
 #include "core/curve.h"
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 
 #define DIG_POOL_MAX 8
 

@@ -8,7 +8,7 @@
 #define DIG_ESTIMATOR_MATCH_POSTERIOR_H
 
 #include "core/curve.h"
-#include "estimator/match/gravel_match.h"
+#include "core/gravel_match.h"
 #include "estimator/match/pool.h"
 #include "estimator/match/prefilter.h"
 

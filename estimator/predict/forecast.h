@@ -6,7 +6,7 @@
 
 #include "core/approach.h"
 #include "core/curve.h"
-#include "estimator/match/gravel_match.h"
+#include "core/gravel_match.h"
 
 #include <stdbool.h>
 

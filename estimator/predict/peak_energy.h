@@ -17,8 +17,8 @@
 #define DIG_ESTIMATOR_PREDICT_PEAK_ENERGY_H
 
 #include "core/curve.h"
+#include "core/gravel_match.h"
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/gravel_match.h"
 
 struct dig_peak_energy {
     double peak_Nm, peak_sigma_Nm; // of the moment; 1 sigma of one dig

@@ -5,8 +5,8 @@
 #define DIG_ESTIMATOR_PREDICT_PREDICT_H
 
 #include "core/curve.h"
+#include "core/gravel_match.h"
 #include "estimator/approach/interpolate.h"
-#include "estimator/match/gravel_match.h"
 #include "estimator/predict/prediction.h"
 
 /// The cells of the match's samples for which the table has the trajectory, equally likely; without

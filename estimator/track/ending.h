@@ -10,7 +10,7 @@
 #ifndef DIG_ESTIMATOR_TRACK_ENDING_H
 #define DIG_ESTIMATOR_TRACK_ENDING_H
 
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 #include "estimator/track/path.h"
 #include "estimator/track/route.h"
 #include "estimator/track/track.h"

@@ -6,7 +6,7 @@
 #define DIG_ESTIMATOR_TRACK_INERTIA_ERROR_H
 
 #include "core/machine.h"
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 
 /// Adds the error to the sigmas of both forces, in quadrature. lambda as in dig_estimator_init().
 /// Does nothing for a dig without forces.

@@ -9,7 +9,7 @@
 #define DIG_ESTIMATOR_TRACK_WINDOW_H
 
 #include "core/curve.h"
-#include "estimator/track/observation.h"
+#include "core/observation.h"
 #include "estimator/track/route.h"
 #include "estimator/track/track.h"
 

@@ -22,62 +22,30 @@ static int64_t ns(const double seconds)
     return (int64_t)llround(fmin(seconds, 3e9) * (double)NS_PER_S);
 }
 
-static void put_pool(const struct dig_curve_set *const set, const struct dig_pool *const pool,
-                     struct dig_identity *const identity)
-{
-    identity->recorded = pool->digs;
-    for (size_t i = 0; i < pool->digs; i++) {
-        const struct dig_observation *const dig = &pool->dig[i];
-        struct dig_identity_dig *const      to  = &identity->recording[i];
-        memcpy(to->trajectory, set->trajectory[dig->trajectory].name, sizeof to->trajectory);
-        memcpy(to->moment_Nm, dig->moment_Nm, sizeof to->moment_Nm);
-        memcpy(to->sigma_Nm, dig->sigma_Nm, sizeof to->sigma_Nm);
-        to->approach = dig->approach;
-        to->first    = dig->first;
-        to->last     = dig->last;
-        to->forces   = dig->forces;
-        if (dig->forces) {
-            memcpy(to->force_N, dig->force_N, sizeof to->force_N);
-            memcpy(to->force_sigma_N, dig->force_sigma_N, sizeof to->force_sigma_N);
-        }
-    }
-}
-
 enum dig_status dig_gravel_state_write(const char *const                    path,
                                        const struct dig_gravel_track *const track,
                                        const struct dig_curve_set *const    set,
                                        const struct dig_pool *const         pool,
                                        struct dig_error *const              error)
 {
-    assert(path != NULL && track != NULL && set != NULL && pool != NULL &&
-           track->match.samples <= DIG_IDENTITY_SAMPLES_MAX);
+    assert(path != NULL && track != NULL && set != NULL && pool != NULL);
     _Static_assert(DIG_POOL_MAX <= DIG_IDENTITY_DIGS_MAX, "a pool must fit");
-    const struct dig_match *const m        = &track->match;
-    struct dig_identity           identity = {
-                  .digs             = m->digs,
-                  .forces           = m->forces,
-                  .gravel           = m->gravel,
-                  .mean             = m->mean,
-                  .low              = m->low,
-                  .high             = m->high,
-                  .nearest          = track->nearest,
-                  .distance         = m->distance,
-                  .nearest_distance = m->nearest_distance,
-                  .weighted         = m->weighted >= 0,
-                  .weighted_nearest = track->weighted,
-
-                  .weighted_distance = m->weighted_distance,
-                  .noise_floor       = m->noise_floor,
-                  .outside           = m->outside,
-                  .family            = dig_match_is_family(m),
-                  .samples           = m->samples,
-                  .made              = track->made,
-                  .matched           = track->matched,
+    struct dig_identity identity = {
+        .made             = track->made,
+        .matched          = track->matched,
+        .match            = track->match,
+        .nearest          = track->nearest,
+        .weighted_nearest = track->weighted,
+        .family           = dig_match_is_family(&track->match),
+        .recorded         = pool->digs,
     };
     memcpy(identity.scene_hash, track->table, sizeof identity.scene_hash);
     memcpy(identity.trajectory, track->trajectory, sizeof identity.trajectory);
-    memcpy(identity.sample, m->sample, m->samples * sizeof m->sample[0]);
-    put_pool(set, pool, &identity);
+    for (size_t i = 0; i < pool->digs; i++) {
+        struct dig_identity_dig *const to = &identity.recording[i];
+        to->seen                          = pool->dig[i];
+        memcpy(to->trajectory, set->trajectory[to->seen.trajectory].name, sizeof to->trajectory);
+    }
 
     struct dig_out        out    = { 0 };
     const enum dig_status status = dig_out_open(&out, path, error);
@@ -115,19 +83,9 @@ static void take_pool(const struct dig_curve_set *const set,
 {
     pool->digs = 0;
     for (size_t i = 0; i < identity->recorded && i < DIG_POOL_MAX; i++) {
-        const struct dig_identity_dig *const from = &identity->recording[i];
-        struct dig_observation               dig  = {
-                           .trajectory = dig_curve_set_find(set, from->trajectory),
-        };
-        memcpy(dig.moment_Nm, from->moment_Nm, sizeof dig.moment_Nm);
-        memcpy(dig.sigma_Nm, from->sigma_Nm, sizeof dig.sigma_Nm);
-        memcpy(dig.force_N, from->force_N, sizeof dig.force_N);
-        memcpy(dig.force_sigma_N, from->force_sigma_N, sizeof dig.force_sigma_N);
-        dig.approach    = from->approach;
-        dig.first       = from->first;
-        dig.last        = from->last;
-        dig.forces      = from->forces;
-        const bool held = dig_observations_check(set, 1, &dig) == DIG_OK &&
+        struct dig_observation dig = identity->recording[i].seen;
+        dig.trajectory             = dig_curve_set_find(set, identity->recording[i].trajectory);
+        const bool held            = dig_observations_check(set, 1, &dig) == DIG_OK &&
                           (dig_approach_is_plain(&dig.approach) ||
                            dig_approach_varies(set, (size_t)dig.trajectory));
         if (!held) {
@@ -163,24 +121,9 @@ enum dig_status dig_gravel_state_read(const char *const path, const struct dig_c
         .path_measured = (double)NAN,
         .made          = i.made,
         .matched       = i.matched,
+        .match         = i.match, // its entries are found below
+        .weighted      = i.weighted_nearest,
     };
-    struct dig_match *const m = &read.match;
-    m->digs                   = i.digs;
-    m->forces                 = i.forces;
-    m->valid                  = true;
-    m->gravel                 = i.gravel;
-    m->mean                   = i.mean;
-    m->low                    = i.low;
-    m->high                   = i.high;
-    m->distance               = i.distance;
-    m->nearest_distance       = i.nearest_distance;
-    m->weighted               = i.weighted ? 0 : -1; // the entry is found below
-    m->weighted_distance      = i.weighted ? i.weighted_distance : (double)NAN;
-    read.weighted             = i.weighted_nearest;
-    m->noise_floor            = i.noise_floor;
-    m->outside                = i.outside;
-    m->samples                = i.samples < DIG_MATCH_SAMPLES ? i.samples : DIG_MATCH_SAMPLES;
-    memcpy(m->sample, i.sample, m->samples * sizeof m->sample[0]);
     memcpy(read.trajectory, i.trajectory, sizeof read.trajectory);
     memcpy(read.table, i.scene_hash, sizeof read.table);
     if (!dig_gravel_track_set_table(&read, set)) {

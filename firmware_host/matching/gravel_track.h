@@ -4,9 +4,9 @@
 #ifndef DIG_FIRMWARE_HOST_MATCHING_GRAVEL_TRACK_H
 #define DIG_FIRMWARE_HOST_MATCHING_GRAVEL_TRACK_H
 
-#include "estimator/match/gravel_match.h"
+#include "core/gravel_match.h"
+#include "core/observation.h"
 #include "estimator/predict/forecast.h"
-#include "estimator/track/observation.h"
 
 #include <stdbool.h>
 #include <stdint.h>

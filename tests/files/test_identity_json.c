@@ -8,32 +8,30 @@ static struct dig_identity example(void)
 {
     struct dig_identity id = {
         .trajectory       = "simpleA",
-        .digs             = 3,
-        .forces           = true,
         .made             = { 1.25, 0.02 },
         .matched          = { 1.2, 0.01 },
-        .gravel           = { { 0.512345, 0.4, 2345.6 } },
-        .mean             = { { 0.52, 0.41, 2300.0 } },
-        .low              = { { 0.4, 0.3, 2000.0 } },
-        .high             = { { 0.6, 0.5, 2600.0 } },
+        .match            = { .digs              = 3,
+                              .forces            = true,
+                              .gravel            = { { 0.512345, 0.4, 2345.6 } },
+                              .mean              = { { 0.52, 0.41, 2300.0 } },
+                              .low               = { { 0.4, 0.3, 2000.0 } },
+                              .high              = { { 0.6, 0.5, 2600.0 } },
+                              .distance          = 0.11,
+                              .nearest_distance  = 0.12,
+                              .weighted_distance = 1.25,
+                              .noise_floor       = 0.2,
+                              .outside           = true,
+                              .samples           = 2,
+                              .sample            = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } } },
         .nearest          = { { 0.5, 0.5, 2500.0 } },
-        .distance         = 0.11,
-        .nearest_distance = 0.12,
-        .weighted         = true,
         .weighted_nearest = { { 0.3, 0.6, 1500.0 } },
-
-        .weighted_distance = 1.25,
-        .noise_floor       = 0.2,
-        .outside           = true,
-        .family            = true,
-        .samples           = 2,
-        .sample            = { { { 0.5, 0.4, 2300.0 } }, { { 0.55, 0.45, 2200.0 } } },
+        .family           = true,
     };
     memset(id.scene_hash, 'a', 64);
     id.recorded = 2;
     for (int i = 0; i < 2; i++) {
-        struct dig_identity_dig *const dig = &id.recording[i];
-        (void)strcpy(dig->trajectory, i == 0 ? "simpleA" : "simpleB");
+        struct dig_observation *const dig = &id.recording[i].seen;
+        (void)strcpy(id.recording[i].trajectory, i == 0 ? "simpleA" : "simpleB");
         dig->first = 0.125;
         dig->last  = 0.875;
         if (i == 1) {
@@ -68,40 +66,41 @@ TEST(what_was_written_is_read_back)
     }
     assert_string_equal(back.scene_hash, id.scene_hash);
     assert_string_equal(back.trajectory, "simpleA");
-    assert_int_equal(back.digs, 3);
-    assert_int_equal(back.samples, 2);
-    assert_true(back.outside && back.family);
+    assert_int_equal(back.match.digs, 3);
+    assert_int_equal(back.match.samples, 2);
+    assert_true(back.match.outside && back.family);
     for (int a = 0; a < DIG_AXES; a++) {
-        assert_close(back.gravel.value[a], id.gravel.value[a], 1e-6);
-        assert_close(back.low.value[a], id.low.value[a], 1e-6);
-        assert_close(back.high.value[a], id.high.value[a], 1e-6);
+        assert_close(back.match.gravel.value[a], id.match.gravel.value[a], 1e-6);
+        assert_close(back.match.low.value[a], id.match.low.value[a], 1e-6);
+        assert_close(back.match.high.value[a], id.match.high.value[a], 1e-6);
         assert_close(back.nearest.value[a], id.nearest.value[a], 1e-6);
-        assert_close(back.sample[1].value[a], id.sample[1].value[a], 1e-6);
+        assert_close(back.match.sample[1].value[a], id.match.sample[1].value[a], 1e-6);
         assert_close(back.weighted_nearest.value[a], id.weighted_nearest.value[a], 1e-6);
     }
-    assert_true(back.weighted);
-    assert_close(back.weighted_distance, 1.25, 1e-9);
-    assert_close(back.noise_floor, 0.2, 1e-9);
+    assert_true(back.match.valid && back.match.weighted == 0);
+    assert_close(back.match.weighted_distance, 1.25, 1e-9);
+    assert_close(back.match.noise_floor, 0.2, 1e-9);
     assert_close(back.made.depth, 1.25, 1e-9);
     assert_close(back.made.attack_rad, 0.02, 1e-9);
     assert_close(back.matched.depth, 1.2, 1e-9);
     assert_close(back.matched.attack_rad, 0.01, 1e-9);
     assert_int_equal(back.recorded, 2);
     assert_string_equal(back.recording[1].trajectory, "simpleB");
-    assert_close(back.recording[1].approach.depth, 1.15, 1e-9);
-    assert_close(back.recording[1].approach.attack_rad, 0.05, 1e-9);
-    assert_true(dig_approach_is_plain(&back.recording[0].approach));
-    assert_close(back.recording[1].first, 0.125, 0.0);
-    assert_close(back.recording[1].last, 0.875, 0.0);
+    assert_close(back.recording[1].seen.approach.depth, 1.15, 1e-9);
+    assert_close(back.recording[1].seen.approach.attack_rad, 0.05, 1e-9);
+    assert_true(dig_approach_is_plain(&back.recording[0].seen.approach));
+    assert_close(back.recording[1].seen.first, 0.125, 0.0);
+    assert_close(back.recording[1].seen.last, 0.875, 0.0);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        assert_close(back.recording[1].moment_Nm[k], 0.002 * k, 1e-7);
-        assert_close(back.recording[0].sigma_Nm[k], 0.75, 0.0);
+        assert_close(back.recording[1].seen.moment_Nm[k], 0.002 * k, 1e-7);
+        assert_close(back.recording[0].seen.sigma_Nm[k], 0.75, 0.0);
     }
-    assert_true(back.forces && !back.recording[0].forces && back.recording[1].forces);
-    assert_memory_equal(back.recording[1].force_N, id.recording[1].force_N,
-                        sizeof id.recording[1].force_N);
-    assert_memory_equal(back.recording[1].force_sigma_N, id.recording[1].force_sigma_N,
-                        sizeof id.recording[1].force_sigma_N);
+    assert_true(back.match.forces && !back.recording[0].seen.forces &&
+                back.recording[1].seen.forces);
+    assert_memory_equal(back.recording[1].seen.force_N, id.recording[1].seen.force_N,
+                        sizeof id.recording[1].seen.force_N);
+    assert_memory_equal(back.recording[1].seen.force_sigma_N, id.recording[1].seen.force_sigma_N,
+                        sizeof id.recording[1].seen.force_sigma_N);
 }
 
 // What it was matched at is written where it is another; neither, where it was not told.
@@ -143,12 +142,13 @@ TEST(a_depth_is_written_once_and_only_where_it_was_told)
 // Of 0.1.0: without a word of forces.
 TEST(what_was_written_before_forces_is_read)
 {
-    struct dig_identity read  = { .forces = true };
+    struct dig_identity read  = { .match.forces = true };
     struct dig_error    error = { "" };
     if (dig_identity_read("tests/data/formats/identity.json", &read, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    assert_true(read.digs > 0 && !read.forces && !read.weighted && !(read.made.depth > 0.0));
+    assert_true(read.match.digs > 0 && !read.match.forces && read.match.weighted < 0 &&
+                !(read.made.depth > 0.0));
 }
 
 // Each defect names the file and the key, and leaves what was there.
@@ -196,19 +196,19 @@ TEST(defects_are_refused_by_name)
         (void)snprintf(bad, sizeof bad, "%.*s%s%s", (int)(at - good), good, defect[i].is,
                        at + strlen(defect[i].was));
         const char *const   path      = scratch_write("bad.json", bad);
-        struct dig_identity untouched = { .digs = 42 };
+        struct dig_identity untouched = { .match.digs = 42 };
         struct dig_error    error     = { "" };
         if (dig_identity_read(path, &untouched, &error) != DIG_EINVAL) {
             fail_msg("%s for %s is taken", defect[i].is, defect[i].was);
         }
-        assert_int_equal(untouched.digs, 42);
+        assert_int_equal(untouched.match.digs, 42);
         if (strstr(error.text, path) == NULL || strstr(error.text, defect[i].names) == NULL) {
             fail_msg("\"%s\" does not name %s", error.text, defect[i].names);
         }
     }
-    struct dig_identity untouched = { .digs = 42 };
+    struct dig_identity untouched = { .match.digs = 42 };
     assert_int_equal(dig_identity_read(scratch_path("absent.json"), &untouched, NULL), DIG_EIO);
-    assert_int_equal(untouched.digs, 42);
+    assert_int_equal(untouched.match.digs, 42);
 }
 
 TESTS_WITH(scratch_setup, scratch_teardown)

@@ -168,19 +168,20 @@ static void show_approaches(const struct pool *const pool, FILE *const to)
 
 static void show_identity(const struct dig_identity *const id, FILE *const to)
 {
+    const struct dig_match *const m = &id->match;
     for (int a = 0; a < DIG_AXES; a++) {
         (void)fprintf(to, "  %-14s %8.4g   90 %%: %.4g to %.4g   nearest entry %.4g\n",
-                      dig_axis_name((enum dig_axis)a), id->gravel.value[a], id->low.value[a],
-                      id->high.value[a], id->nearest.value[a]);
+                      dig_axis_name((enum dig_axis)a), m->gravel.value[a], m->low.value[a],
+                      m->high.value[a], id->nearest.value[a]);
     }
-    (void)fprintf(to, "  distance %.3f, nearest entry %.3f, noise floor %.3f%s\n", id->distance,
-                  id->nearest_distance, id->noise_floor,
-                  id->outside ? "; OUTSIDE: none of the table's gravels" : "");
-    if (id->weighted) {
+    (void)fprintf(to, "  distance %.3f, nearest entry %.3f, noise floor %.3f%s\n", m->distance,
+                  m->nearest_distance, m->noise_floor,
+                  m->outside ? "; OUTSIDE: none of the table's gravels" : "");
+    if (m->weighted >= 0) {
         const double *const g = id->weighted_nearest.value;
         (void)fprintf(to, "  noise-weighted: entry %.4g / %.4g / %.4g, %.2f of what is expected\n",
                       g[DIG_AXIS_FRICTION], g[DIG_AXIS_ROLLING], g[DIG_AXIS_DENSITY_kgpm3],
-                      id->weighted_distance);
+                      m->weighted_distance);
     }
 }
 
@@ -200,29 +201,15 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
                                        const struct dig_match *const       match)
 {
     struct dig_identity id = {
-        .digs             = match->digs,
-        .forces           = match->forces,
-        .gravel           = match->gravel,
-        .mean             = match->mean,
-        .low              = match->low,
-        .high             = match->high,
-        .nearest          = set->gravel[match->nearest],
-        .distance         = match->distance,
-        .nearest_distance = match->nearest_distance,
-        .weighted         = match->weighted >= 0,
-        .noise_floor      = match->noise_floor,
-        .outside          = match->outside,
-        .family           = dig_match_is_family(match),
-        .samples          = match->samples,
-        .made             = youngest->made,
-        .matched          = youngest->approach,
+        .made    = youngest->made,
+        .matched = youngest->approach,
+        .match   = *match,
+        .nearest = set->gravel[match->nearest],
+        .family  = dig_match_is_family(match),
     };
-    if (id.weighted) {
-        id.weighted_nearest  = set->gravel[match->weighted];
-        id.weighted_distance = match->weighted_distance;
+    if (match->weighted >= 0) {
+        id.weighted_nearest = set->gravel[match->weighted];
     }
-    _Static_assert(DIG_MATCH_SAMPLES <= DIG_IDENTITY_SAMPLES_MAX, "the posterior must fit");
-    memcpy(id.sample, match->sample, match->samples * sizeof match->sample[0]);
     (void)snprintf(id.scene_hash, sizeof id.scene_hash, "%s", set->scene_hash);
     (void)snprintf(id.trajectory, sizeof id.trajectory, "%s",
                    set->trajectory[youngest->trajectory].name);

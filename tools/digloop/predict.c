@@ -17,22 +17,6 @@
 
 #define GRID_s 0.005
 
-// The match as far as a prediction needs it.
-static struct dig_match match_of(const struct dig_identity *const id)
-{
-    struct dig_match m = { .valid       = true,
-                           .gravel      = id->gravel,
-                           .mean        = id->mean,
-                           .low         = id->low,
-                           .high        = id->high,
-                           .distance    = id->distance,
-                           .noise_floor = id->noise_floor,
-                           .outside     = id->outside };
-    m.samples          = id->samples < DIG_MATCH_SAMPLES ? id->samples : DIG_MATCH_SAMPLES;
-    memcpy(m.sample, id->sample, m.samples * sizeof m.sample[0]);
-    return m;
-}
-
 static double at(const float curve[DIG_CURVE_POINTS], const double progress)
 {
     const double place = fmin(fmax(progress, 0.0), 1.0) * (DIG_CURVE_POINTS - 1);
@@ -233,14 +217,13 @@ enum dig_status digloop_predict(const struct digloop_job *const job, struct dig_
     if (status != DIG_OK) {
         return status;
     }
-    const struct dig_match match = match_of(&id);
-    struct prediction      p     = { .errors = { .digs = 0 } };
-    status                       = predict(job, t, &match, &p, error);
+    struct prediction p = { .errors = { .digs = 0 } };
+    status              = predict(job, t, &id.match, &p, error);
     if (status == DIG_OK && options->out != NULL) {
         status = write_curve(options->out, job->set, &p.trajectory, &p.curve, error);
     }
     if (status == DIG_OK && options->measured != NULL) {
-        status = digloop_prediction_error_measure(job, t, &match, &p.errors, error);
+        status = digloop_prediction_error_measure(job, t, &id.match, &p.errors, error);
     }
     if (status == DIG_OK) {
         print(options, &p, job->machine);

@@ -1,7 +1,7 @@
 // The gravel matched, with its posterior.
 
-#ifndef DIG_ESTIMATOR_MATCH_GRAVEL_MATCH_H
-#define DIG_ESTIMATOR_MATCH_GRAVEL_MATCH_H
+#ifndef DIG_CORE_GRAVEL_MATCH_H
+#define DIG_CORE_GRAVEL_MATCH_H
 
 #include "core/curve.h"
 
@@ -36,4 +36,4 @@ struct dig_match {
     struct dig_gravel sample[DIG_MATCH_SAMPLES]; // equally likely, in proportion to the posterior
 };
 
-#endif // DIG_ESTIMATOR_MATCH_GRAVEL_MATCH_H
+#endif // DIG_CORE_GRAVEL_MATCH_H

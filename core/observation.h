@@ -1,7 +1,7 @@
 // An observed dig: what is matched.
 
-#ifndef DIG_ESTIMATOR_TRACK_OBSERVATION_H
-#define DIG_ESTIMATOR_TRACK_OBSERVATION_H
+#ifndef DIG_CORE_OBSERVATION_H
+#define DIG_CORE_OBSERVATION_H
 
 #include "core/approach.h"
 #include "core/curve.h"
@@ -37,4 +37,4 @@ struct dig_observation {
     enum dig_ending ending; // of a recording of forces: OPEN
 };
 
-#endif // DIG_ESTIMATOR_TRACK_OBSERVATION_H
+#endif // DIG_CORE_OBSERVATION_H
