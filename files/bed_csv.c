@@ -83,7 +83,8 @@ enum dig_status dig_bed_read(const char *const path, struct dig_bed *const bed,
                              struct dig_error *const error)
 {
     struct dig_csv  csv;
-    enum dig_status status = dig_csv_read(path, COLUMNS, column, &csv, error);
+    enum dig_status status =
+        dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, COLUMNS, column, &csv, error);
     if (status != DIG_OK) {
         return status;
     }

@@ -64,6 +64,9 @@ static enum dig_status check_field(const char *const path, const enum dig_map_fi
         return dig_yaml_refuse(path, error, "columns.%s: expected either a column or a value",
                                dig_map_name(field));
     }
+    if (field == DIG_MAP_T_s && !named) {
+        return dig_yaml_refuse(path, error, "columns.t_s: a value, expected a column");
+    }
     if (!isfinite(c->factor)) {
         return dig_yaml_refuse(path, error, "columns.%s: factor %g, expected a finite one",
                                dig_map_name(field), c->factor);

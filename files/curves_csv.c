@@ -1,164 +1,100 @@
 #include "files/curves_csv.h"
 
 #include "core/name.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "files/text/csv.h"
 #include "files/text/whole.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define FIELDS_MAX 256 // of a line
-
 struct reader {
-    const char                       *path;
-    const struct dig_curve_map       *map;
-    const struct dig_foreign_visitor *visitor;
-    struct dig_error                 *error;
-    size_t                            line;
-    size_t                            fields;             // in the header
-    size_t                            at[DIG_MAP_FIELDS]; // header field of each column
-    struct dig_foreign_dig            dig;                // under way
-    size_t                            room;               // its rows allocated
+    const char                 *path;
+    const struct dig_curve_map *map;
+    struct dig_error           *error;
+    struct dig_csv              csv;
+    size_t                      at[DIG_MAP_FIELDS];    // column of each field the map names
+    double                      fixed[DIG_MAP_FIELDS]; // of the others; NaN where it is not there
 };
 
-// One sample, and the dig it belongs to.
-struct sample {
-    struct dig_foreign_dig of; // without rows
-    struct dig_force_row   row;
-};
-
-// Cuts a line into fields; how many there are.
-static size_t split(char *rest, char *field[const FIELDS_MAX])
+static bool is_column(const struct reader *const r, const enum dig_map_field f)
 {
-    size_t n = 0;
-    while (n < FIELDS_MAX && (field[n] = dig_csv_field(&rest)) != NULL) {
-        n++;
-    }
-    return n;
+    return r->map->field[f].column[0] != '\0';
 }
 
-static enum dig_status read_header(struct reader *const r, char *const line)
+static const char *name_of(const struct reader *const r, const enum dig_map_field f)
 {
-    char *field[FIELDS_MAX];
-    r->fields = split(line, field);
-    for (int f = 0; f < DIG_MAP_FIELDS; f++) {
-        const char *const name = r->map->field[f].column;
-        r->at[f]               = 0;
-        while (name[0] != '\0' && r->at[f] < r->fields && strcmp(field[r->at[f]], name) != 0) {
-            r->at[f]++;
-        }
-        if (r->at[f] >= r->fields) {
-            return dig_error_set(r->error, DIG_EINVAL,
-                                 "%s:%zu: column %s: missing, expected it for %s as the map says",
-                                 r->path, r->line, name, dig_map_name((enum dig_map_field)f));
-        }
-    }
-    return DIG_OK;
+    return is_column(r, f) ? r->map->field[f].column : dig_map_name(f);
 }
 
-static const char *text_of(const struct reader *const r, char *const field[const],
-                           const enum dig_map_field f)
+// As it stands in the file; NaN where there is none.
+static double found(const struct reader *const r, const size_t row, const enum dig_map_field f)
 {
-    const struct dig_map_column *const c = &r->map->field[f];
-    return c->column[0] != '\0' ? field[r->at[f]] : c->value;
-}
-
-static enum dig_status refuse_field(const struct reader *const r, const enum dig_map_field f,
-                                    const char *const found, const char *const expected)
-{
-    const char *const name = r->map->field[f].column;
-    return dig_error_set(r->error, DIG_EINVAL, "%s:%zu: column %s: \"%.40s\", expected %s", r->path,
-                         r->line, name[0] != '\0' ? name : dig_map_name(f), found, expected);
+    return is_column(r, f) ? r->csv.value[row * r->csv.columns + r->at[f]] : r->fixed[f];
 }
 
 // Carried mass that is not there is not known; packing, depth and attack are 0.
-static enum dig_status number_of(const struct reader *const r, char *const field[const],
-                                 const enum dig_map_field f, double *const value)
+static double number(const struct reader *const r, const size_t row, const enum dig_map_field f)
 {
-    const char *const text = text_of(r, field, f);
-    if (text[0] == '\0' && f >= DIG_MAP_NEEDED) {
-        *value = f == DIG_MAP_CARRIED_kg ? (double)NAN : 0.0;
-        return DIG_OK;
-    }
-    char        *end    = NULL;
-    const double number = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(number)) {
-        return refuse_field(r, f, text, "a finite number");
-    }
-    *value = number * r->map->field[f].factor;
-    return DIG_OK;
+    const double value = found(r, row, f);
+    return isnan(value) && f != DIG_MAP_CARRIED_kg ? 0.0 : value * r->map->field[f].factor;
 }
 
-// A depth that is not there is 0, which counts as 1; one that is given must be one.
-static enum dig_status approach_of(const struct reader *const r, char *const field[const],
-                                   const double               number[const DIG_MAP_FIELDS],
-                                   struct dig_approach *const approach)
+static enum dig_status refuse(const struct reader *const r, const size_t row,
+                              const enum dig_map_field f, const char *const expected)
 {
-    const double      depth      = number[DIG_MAP_DEPTH];
-    const double      attack_deg = number[DIG_MAP_ATTACK_deg];
-    const char *const given      = text_of(r, field, DIG_MAP_DEPTH);
-    if (given[0] != '\0' &&
+    return dig_error_set(r->error, DIG_EINVAL, "%s:%d: column %s: %g, expected %s", r->path,
+                         r->csv.line[row], name_of(r, f), found(r, row, f), expected);
+}
+
+// The dig a sample belongs to, without its rows. A depth that is not there is 0, which counts as 1;
+// one that is given must be one.
+static enum dig_status read_dig(const struct reader *const r, const size_t row,
+                                struct dig_foreign_dig *const dig)
+{
+    const char *const name       = is_column(r, DIG_MAP_TRAJECTORY)
+                                       ? r->csv.word[row]
+                                       : r->map->field[DIG_MAP_TRAJECTORY].value;
+    const double      depth      = number(r, row, DIG_MAP_DEPTH);
+    const double      attack_deg = number(r, row, DIG_MAP_ATTACK_deg);
+    const double      packing    = number(r, row, DIG_MAP_PACKING);
+    if (!isnan(found(r, row, DIG_MAP_DEPTH)) &&
         !(depth >= DIG_APPROACH_DEPTH_LEAST && depth <= DIG_APPROACH_DEPTH_MOST)) {
-        return refuse_field(r, DIG_MAP_DEPTH, given, "a factor of 0.2 to 3");
+        return refuse(r, row, DIG_MAP_DEPTH, "a factor of 0.2 to 3");
     }
     if (!(fabs(attack_deg) <= 45.0)) {
-        return refuse_field(r, DIG_MAP_ATTACK_deg, text_of(r, field, DIG_MAP_ATTACK_deg),
-                            "-45 to 45 deg");
+        return refuse(r, row, DIG_MAP_ATTACK_deg, "-45 to 45 deg");
     }
-    *approach = (struct dig_approach){ depth, attack_deg * DIG_RAD_PER_DEG };
+    if (!dig_name_ok(name) || strlen(name) >= DIG_NAME_SIZE) {
+        return dig_error_set(r->error, DIG_EINVAL,
+                             "%s:%d: column %s: \"%.40s\", expected " DIG_NAME_RULE
+                             ", at most 31 characters",
+                             r->path, r->csv.line[row], name_of(r, DIG_MAP_TRAJECTORY), name);
+    }
+    if (!(packing >= 0.0 && packing <= 1e6) || packing > floor(packing)) {
+        return refuse(r, row, DIG_MAP_PACKING, "a whole number from 0");
+    }
+    *dig = (struct dig_foreign_dig){
+        .gravel   = { { number(r, row, DIG_MAP_FRICTION), number(r, row, DIG_MAP_ROLLING),
+                        number(r, row, DIG_MAP_DENSITY_kgpm3) } },
+        .approach = { depth, attack_deg * DIG_RAD_PER_DEG },
+        .packing  = (size_t)packing,
+        .line     = (size_t)r->csv.line[row],
+    };
+    memcpy(dig->trajectory, name, strlen(name) + 1);
     return DIG_OK;
 }
 
-static enum dig_status read_sample(const struct reader *const r, char *const line,
-                                   struct sample *const sample)
+static struct dig_force_row read_row(const struct reader *const r, const size_t row)
 {
-    char *field[FIELDS_MAX];
-    if (split(line, field) != r->fields) {
-        return dig_error_set(r->error, DIG_EINVAL, "%s:%zu: expected %zu fields as in the header",
-                             r->path, r->line, r->fields);
-    }
-    double          number[DIG_MAP_FIELDS] = { 0.0 };
-    enum dig_status status                 = DIG_OK;
-    for (int f = 0; status == DIG_OK && f < DIG_MAP_FIELDS; f++) {
-        if (f != DIG_MAP_TRAJECTORY) {
-            status = number_of(r, field, (enum dig_map_field)f, &number[f]);
-        }
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_approach approach;
-    status = approach_of(r, field, number, &approach);
-    if (status != DIG_OK) {
-        return status;
-    }
-    const char *const name    = text_of(r, field, DIG_MAP_TRAJECTORY);
-    const double      packing = number[DIG_MAP_PACKING];
-    if (!dig_name_ok(name) || strlen(name) >= DIG_NAME_SIZE) {
-        return refuse_field(r, DIG_MAP_TRAJECTORY, name, DIG_NAME_RULE ", at most 31 characters");
-    }
-    if (!(packing >= 0.0 && packing <= 1e6) || packing > floor(packing)) {
-        return refuse_field(r, DIG_MAP_PACKING, text_of(r, field, DIG_MAP_PACKING),
-                            "a whole number from 0");
-    }
-    *sample = (struct sample){
-        .of  = { .gravel   = { { number[DIG_MAP_FRICTION], number[DIG_MAP_ROLLING],
-                                 number[DIG_MAP_DENSITY_kgpm3] } },
-                 .approach = approach,
-                 .packing  = (size_t)packing,
-                 .line     = r->line },
-        .row = { .t_s        = number[DIG_MAP_T_s],
-                 .Fx_N       = number[DIG_MAP_FX_N],
-                 .Fz_N       = number[DIG_MAP_FZ_N],
-                 .My_Nm      = number[DIG_MAP_MY_Nm],
-                 .carried_kg = number[DIG_MAP_CARRIED_kg] },
-    };
-    memcpy(sample->of.trajectory, name, strlen(name) + 1);
-    return DIG_OK;
+    return (struct dig_force_row){ .t_s        = number(r, row, DIG_MAP_T_s),
+                                   .Fx_N       = number(r, row, DIG_MAP_FX_N),
+                                   .Fz_N       = number(r, row, DIG_MAP_FZ_N),
+                                   .My_Nm      = number(r, row, DIG_MAP_MY_Nm),
+                                   .carried_kg = number(r, row, DIG_MAP_CARRIED_kg) };
 }
 
 static bool is_same_dig(const struct dig_foreign_dig *const a,
@@ -169,69 +105,60 @@ static bool is_same_dig(const struct dig_foreign_dig *const a,
            dig_gravel_is_same(&a->gravel, &b->gravel);
 }
 
-static enum dig_status end_dig(struct reader *const r)
+// Visits the dig of the rows from *begin on, which becomes the first row behind it.
+static enum dig_status visit_dig(const struct reader *const r, size_t *const begin,
+                                 const struct dig_foreign_visitor *const visitor)
 {
-    if (r->dig.recording.rows == 0) {
-        return DIG_OK;
+    struct dig_foreign_dig dig;
+    struct dig_foreign_dig next;
+    enum dig_status        status = read_dig(r, *begin, &dig);
+    size_t                 end    = *begin + 1;
+    for (; status == DIG_OK && end < r->csv.rows; end++) {
+        status = read_dig(r, end, &next);
+        if (status == DIG_OK && !is_same_dig(&dig, &next)) {
+            break;
+        }
     }
-    const enum dig_status status = r->visitor->visit(r->visitor->context, &r->dig, r->error);
-    r->dig.recording.rows        = 0;
+    if (status != DIG_OK) {
+        return status;
+    }
+    const size_t                rows = end - *begin;
+    struct dig_force_row *const kept = malloc(rows * sizeof *kept);
+    if (kept == NULL) {
+        return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, rows);
+    }
+    for (size_t i = 0; i < rows; i++) {
+        kept[i] = read_row(r, *begin + i);
+    }
+    dig.recording = (struct dig_recording){ .rows = rows, .row = kept };
+    *begin        = end;
+    status        = visitor->visit(visitor->context, &dig, r->error);
+    free(kept);
     return status;
 }
 
-static enum dig_status take_sample(struct reader *const r, const struct sample *const sample)
+// The columns the map names, and the values it has instead.
+static enum dig_status read_columns(struct reader *const r)
 {
-    struct dig_recording *const recording = &r->dig.recording;
-    if (recording->rows > 0 && !is_same_dig(&r->dig, &sample->of)) {
-        const enum dig_status status = end_dig(r);
-        if (status != DIG_OK) {
-            return status;
+    struct dig_csv_column column[DIG_MAP_FIELDS];
+    size_t                columns = 0;
+    for (int i = 0; i < DIG_MAP_FIELDS; i++) {
+        const enum dig_map_field           f  = (enum dig_map_field)i;
+        const struct dig_map_column *const of = &r->map->field[f];
+        r->fixed[f]                           = NAN;
+        if (is_column(r, f)) {
+            r->at[f]          = columns;
+            column[columns++] = (struct dig_csv_column){ .name      = of->column,
+                                                         .may_empty = f >= DIG_MAP_NEEDED,
+                                                         .text      = f == DIG_MAP_TRAJECTORY };
+        } else if (of->value[0] != '\0' && f != DIG_MAP_TRAJECTORY &&
+                   !dig_text_number(of->value, &r->fixed[f])) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s: the map's value of %s: \"%.40s\", expected a finite number",
+                                 r->path, dig_map_name(f), of->value);
         }
     }
-    if (recording->rows == 0) {
-        struct dig_force_row *const kept = recording->row;
-        r->dig                           = sample->of;
-        r->dig.recording                 = (struct dig_recording){ .row = kept };
-    }
-    if (recording->rows == r->room) {
-        const size_t                room = r->room * 2 + 1024;
-        struct dig_force_row *const more = realloc(recording->row, room * sizeof *more);
-        if (more == NULL) {
-            return dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
-        }
-        recording->row = more;
-        r->room        = room;
-    }
-    recording->row[recording->rows++] = sample->row;
-    return DIG_OK;
-}
-
-// The header, every line, and the last dig.
-static enum dig_status read_lines(struct reader *const r, char *text)
-{
-    enum dig_status status  = DIG_OK;
-    bool            started = false;
-    for (char *line; status == DIG_OK && (line = dig_csv_line(&text)) != NULL;) {
-        r->line++;
-        if (dig_csv_is_comment_or_blank(line)) {
-            continue;
-        }
-        if (!started) {
-            status  = read_header(r, line);
-            started = true;
-            continue;
-        }
-        struct sample sample = { .of = { .packing = 0 } };
-        status               = read_sample(r, line, &sample);
-        if (status == DIG_OK) {
-            status = take_sample(r, &sample);
-        }
-    }
-    if (status == DIG_OK && r->dig.recording.rows == 0) {
-        return dig_error_set(r->error, DIG_EINVAL, "%s:%zu: no samples, expected at least one dig",
-                             r->path, r->line > 0 ? r->line : 1);
-    }
-    return status == DIG_OK ? end_dig(r) : status;
+    return dig_csv_read(r->path, DIG_CSV_SKIP_OTHERS, columns, column, &r->csv, r->error);
 }
 
 enum dig_status dig_curves_read(const char *const path, const struct dig_curve_map *const map,
@@ -239,17 +166,13 @@ enum dig_status dig_curves_read(const char *const path, const struct dig_curve_m
                                 struct dig_error *const                 error)
 {
     assert(path != NULL && map != NULL && visitor != NULL);
-    char           *text   = NULL;
-    size_t          size   = 0;
-    enum dig_status status = dig_file_read(path, &text, &size, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    struct reader       r      = { .path = path, .map = map, .error = error };
     struct dig_c_locale locale = dig_c_locale_enter();
-    struct reader       r      = { .path = path, .map = map, .visitor = visitor, .error = error };
-    status                     = read_lines(&r, text);
-    dig_recording_finish(&r.dig.recording);
+    enum dig_status     status = read_columns(&r);
+    for (size_t row = 0; status == DIG_OK && row < r.csv.rows;) {
+        status = visit_dig(&r, &row, visitor);
+    }
+    dig_csv_finish(&r.csv);
     dig_c_locale_leave(&locale);
-    free(text);
     return status;
 }

@@ -161,7 +161,8 @@ enum dig_status dig_recording_read(const char *const path, struct dig_recording 
     assert(path != NULL && recording != NULL);
 
     struct dig_csv  csv;
-    enum dig_status status = dig_csv_read(path, FORCE_COLUMNS, force_column, &csv, error);
+    enum dig_status status =
+        dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, FORCE_COLUMNS, force_column, &csv, error);
     if (status == DIG_OK) {
         status = take_force_rows(&csv, path, recording, error);
         dig_csv_finish(&csv);
@@ -209,7 +210,8 @@ enum dig_status dig_machine_recording_read(const char *const                   p
     const struct machine_columns of =
         machine_columns(senses ? DIG_SENSING_SENSOR : DIG_SENSING_CYLINDERS);
     struct dig_csv  csv;
-    enum dig_status status = dig_csv_read(path, of.count, of.column, &csv, error);
+    enum dig_status status =
+        dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, of.count, of.column, &csv, error);
     if (status == DIG_OK) {
         status = take_machine_rows(&of, &csv, path, recording, error);
         dig_csv_finish(&csv);

@@ -10,22 +10,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_MAX ((size_t)1 << 22) // half a day at 100 Hz
+#define ROWS_MAX   ((size_t)1 << 22) // half a day at 100 Hz
+#define FIELDS_MAX 256               // of a line; what stands behind is skipped
+#define ABSENT     FIELDS_MAX
 
 // What is being read, and where the reader stands.
 struct reader {
     const char                  *path;
     size_t                       columns;
     const struct dig_csv_column *column;
+    enum dig_csv_others          others;
     struct dig_error            *error;
     int                          line;
-    size_t                       fields;                      // in the header
-    size_t                       target[DIG_CSV_COLUMNS_MAX]; // header field -> column asked for
+    size_t                       fields;                  // in the header
+    const char                  *header[FIELDS_MAX];      // its fields
+    size_t                       at[DIG_CSV_COLUMNS_MAX]; // which of them a column is
     struct dig_csv               csv;
     size_t                       room; // rows allocated
 };
 
-char *dig_csv_line(char **const rest)
+// Cuts the next line off *rest, without its end; NULL at the end of the text.
+static char *next_line(char **const rest)
 {
     char *const line = *rest;
     if (line == NULL || *line == '\0') {
@@ -43,7 +48,8 @@ char *dig_csv_line(char **const rest)
     return line;
 }
 
-char *dig_csv_field(char **const rest)
+// Cuts the next field off the rest of a line, without the blanks around it; NULL at its end.
+static char *next_field(char **const rest)
 {
     char *field = *rest;
     if (field == NULL) {
@@ -64,7 +70,7 @@ char *dig_csv_field(char **const rest)
 
 static const char byte_order_mark[] = "\xef\xbb\xbf";
 
-bool dig_csv_is_comment_or_blank(const char *const line)
+static bool is_comment_or_blank(const char *const line)
 {
     const char first = line[strspn(line, " \t")];
     return first == '#' || first == '\0';
@@ -80,33 +86,48 @@ static const char *names(const struct reader *const r, const size_t size, char t
     return text;
 }
 
-static enum dig_status read_header(struct reader *const r, char *line)
+// Cuts a line into fields; how many there are.
+static size_t split(char *line, const char *field[const FIELDS_MAX])
+{
+    size_t n = 0;
+    while (n < FIELDS_MAX && (field[n] = next_field(&line)) != NULL) {
+        n++;
+    }
+    return n;
+}
+
+static enum dig_status read_header(struct reader *const r, char *const line)
 {
     char known[256];
-    bool seen[DIG_CSV_COLUMNS_MAX] = { false };
-    for (const char *field; (field = dig_csv_field(&line)) != NULL; r->fields++) {
-        size_t at = 0;
-        while (at < r->columns && strcmp(r->column[at].name, field) != 0) {
-            at++;
+    for (size_t c = 0; c < r->columns; c++) {
+        r->at[c] = ABSENT;
+    }
+    r->fields = split(line, r->header);
+    for (size_t f = 0; f < r->fields; f++) {
+        bool asked_for = r->others == DIG_CSV_SKIP_OTHERS;
+        for (size_t c = 0; c < r->columns; c++) {
+            if (strcmp(r->column[c].name, r->header[f]) != 0) {
+                continue;
+            }
+            if (r->at[c] != ABSENT) {
+                return dig_error_set(r->error, DIG_EINVAL,
+                                     "%s:%d: column %s: given twice, expected once", r->path,
+                                     r->line, r->header[f]);
+            }
+            r->at[c]   = f;
+            asked_for = true;
         }
-        if (at == r->columns) {
+        if (!asked_for) {
             return dig_error_set(r->error, DIG_EINVAL,
                                  "%s:%d: column \"%.40s\": unknown, expected a header of %s",
-                                 r->path, r->line, field, names(r, sizeof known, known));
+                                 r->path, r->line, r->header[f], names(r, sizeof known, known));
         }
-        if (seen[at]) {
-            return dig_error_set(r->error, DIG_EINVAL,
-                                 "%s:%d: column %s: given twice, expected once", r->path, r->line,
-                                 field);
-        }
-        seen[at]             = true;
-        r->target[r->fields] = at;
     }
-    for (size_t i = 0; i < r->columns; i++) {
-        if (!seen[i] && !r->column[i].optional) {
+    for (size_t c = 0; c < r->columns; c++) {
+        if (r->at[c] == ABSENT && !r->column[c].optional) {
             return dig_error_set(r->error, DIG_EINVAL,
                                  "%s:%d: column %s: missing, expected a header of %s", r->path,
-                                 r->line, r->column[i].name, names(r, sizeof known, known));
+                                 r->line, r->column[c].name, names(r, sizeof known, known));
         }
     }
     return DIG_OK;
@@ -131,7 +152,11 @@ static enum dig_status make_room(struct reader *const r)
     if (line != NULL) {
         r->csv.line = line;
     }
-    if (value == NULL || line == NULL) {
+    const char **const word = realloc(r->csv.word, room * sizeof *word);
+    if (word != NULL) {
+        r->csv.word = word;
+    }
+    if (value == NULL || line == NULL || word == NULL) {
         (void)dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
         return DIG_ENOMEM;
     }
@@ -139,30 +164,26 @@ static enum dig_status make_room(struct reader *const r)
     return DIG_OK;
 }
 
-static enum dig_status read_row(struct reader *const r, char *line)
+static enum dig_status read_row(struct reader *const r, char *const line)
 {
     enum dig_status status = make_room(r);
     if (status != DIG_OK) {
         return status;
     }
-    double *const row = r->csv.value + r->csv.rows * r->columns;
-    for (size_t i = 0; i < r->columns; i++) {
-        row[i] = NAN;
-    }
-
-    size_t fields = 0;
-    for (const char *field; (field = dig_csv_field(&line)) != NULL; fields++) {
-        if (fields >= r->fields) {
-            continue;
-        }
-        const struct dig_csv_column *const column = &r->column[r->target[fields]];
-        if (field[0] == '\0' && column->may_empty) {
-            continue;
-        }
-        if (!dig_text_number(field, &row[r->target[fields]])) {
+    const char   *field[FIELDS_MAX];
+    const size_t  fields = split(line, field);
+    double *const row    = r->csv.value + r->csv.rows * r->columns;
+    for (size_t c = 0; c < r->columns; c++) {
+        const struct dig_csv_column *const column = &r->column[c];
+        const char *const                  found  = r->at[c] < fields ? field[r->at[c]] : "";
+        row[c]                                    = NAN;
+        if (column->text) {
+            r->csv.word[r->csv.rows] = found;
+        } else if (r->at[c] < fields && !(found[0] == '\0' && column->may_empty) &&
+                   !dig_text_number(found, &row[c])) {
             return dig_error_set(r->error, DIG_EINVAL,
                                  "%s:%d: column %s: \"%.40s\", expected a finite number", r->path,
-                                 r->line, column->name, field);
+                                 r->line, column->name, found);
         }
     }
     if (fields != r->fields) {
@@ -170,9 +191,8 @@ static enum dig_status read_row(struct reader *const r, char *line)
                              "%s:%d: column %s: the line has %zu fields, expected %zu as in the "
                              "header",
                              r->path, r->line,
-                             fields < r->fields ? r->column[r->target[fields]].name
-                                                : "after the last",
-                             fields, r->fields);
+                             fields < r->fields ? r->header[fields] : "after the last", fields,
+                             r->fields);
     }
     r->csv.line[r->csv.rows++] = r->line;
     return DIG_OK;
@@ -186,9 +206,9 @@ static enum dig_status read_lines(struct reader *const r, char *text)
     }
     bool            header = false;
     enum dig_status status = DIG_OK;
-    for (char *line; status == DIG_OK && (line = dig_csv_line(&text)) != NULL;) {
+    for (char *line; status == DIG_OK && (line = next_line(&text)) != NULL;) {
         r->line++;
-        if (!dig_csv_is_comment_or_blank(line)) {
+        if (!is_comment_or_blank(line)) {
             status = header ? read_row(r, line) : read_header(r, line);
             header = true;
         }
@@ -203,29 +223,28 @@ static enum dig_status read_lines(struct reader *const r, char *text)
     return status;
 }
 
-enum dig_status dig_csv_read(const char *const path, const size_t columns,
-                             const struct dig_csv_column column[], struct dig_csv *const csv,
-                             struct dig_error *const error)
+enum dig_status dig_csv_read(const char *const path, const enum dig_csv_others others,
+                             const size_t columns, const struct dig_csv_column column[],
+                             struct dig_csv *const csv, struct dig_error *const error)
 {
     assert(path != NULL && columns > 0 && columns <= DIG_CSV_COLUMNS_MAX && csv != NULL);
 
-    char           *text   = NULL;
+    struct reader reader = {
+        .path    = path,
+        .columns = columns,
+        .column  = column,
+        .others  = others,
+        .error   = error,
+        .csv     = { .columns = columns },
+    };
     size_t          size   = 0;
-    enum dig_status status = dig_file_read(path, &text, &size, error);
+    enum dig_status status = dig_file_read(path, &reader.csv.text, &size, error);
     if (status != DIG_OK) {
         return status;
     }
     struct dig_c_locale locale = dig_c_locale_enter();
-    struct reader       reader = {
-              .path    = path,
-              .columns = columns,
-              .column  = column,
-              .error   = error,
-              .csv     = { .columns = columns },
-    };
-    status = read_lines(&reader, text);
+    status                     = read_lines(&reader, reader.csv.text);
     dig_c_locale_leave(&locale);
-    free(text);
     if (status != DIG_OK) {
         dig_csv_finish(&reader.csv);
         return status;
@@ -251,11 +270,11 @@ bool dig_csv_has(const char *const path, const char *const column)
         // Else it is the last line, or holds a NUL, which no text does.
         more                        = ends || length == sizeof piece - 1;
         text[strcspn(text, "\r\n")] = '\0';
-        header                      = begins && !dig_csv_is_comment_or_blank(text) ? text : NULL;
+        header                      = begins && !is_comment_or_blank(text) ? text : NULL;
         begins                      = ends;
     }
     bool has = false;
-    for (const char *field; header != NULL && !has && (field = dig_csv_field(&header)) != NULL;) {
+    for (const char *field; header != NULL && !has && (field = next_field(&header)) != NULL;) {
         has = strcmp(field, column) == 0;
     }
     (void)fclose(file);
@@ -267,6 +286,8 @@ void dig_csv_finish(struct dig_csv *const csv)
     if (csv != NULL) {
         free(csv->value);
         free(csv->line);
+        free(csv->word);
+        free(csv->text);
         *csv = (struct dig_csv){ 0 };
     }
 }

@@ -24,7 +24,9 @@ TEST(rows_without_end_are_refused_by_their_line)
     assert_int_equal(fclose(file), 0);
     struct dig_csv   csv   = { .rows = 42 };
     struct dig_error error = { "" };
-    assert_int_equal(dig_csv_read(scratch_path("long.csv"), 2, columns, &csv, &error), DIG_EINVAL);
+    assert_int_equal(
+        dig_csv_read(scratch_path("long.csv"), DIG_CSV_REFUSE_OTHERS, 2, columns, &csv, &error),
+        DIG_EINVAL);
     assert_contains(error.text, "long.csv:4194306: a row after 4194304 others, expected fewer");
     assert_int_equal(csv.rows, 42);
 }
@@ -83,9 +85,10 @@ TEST(a_file_that_changes_while_it_is_read_is_rows_or_a_refusal)
     pthread_t         thread;
     assert_int_equal(pthread_create(&thread, NULL, write_again_and_again, &writer), 0);
     for (int i = 0; i < 300; i++) {
-        struct dig_csv        csv    = { 0 };
-        struct dig_error      error  = { "" };
-        const enum dig_status status = dig_csv_read(path, 2, columns, &csv, &error);
+        struct dig_csv        csv   = { 0 };
+        struct dig_error      error = { "" };
+        const enum dig_status status =
+            dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, 2, columns, &csv, &error);
         (void)dig_csv_has(path, "y");
         if (status == DIG_OK) {
             assert_true(csv.rows >= 1 && isfinite(csv.value[0]));

@@ -141,21 +141,23 @@ TEST(what_does_not_fit_the_map_is_refused_by_its_line)
     const struct dig_curve_map map =
         map_of(HEAD "  My_Nm: {column: torque}\n  packing: {column: rep}\n");
     static const char *const bad[][2] = {
-        { "dig,mu,rho,ms,X,Z,rep\n", ":1: column torque: missing, expected it for My_Nm" },
+        { "dig,mu,rho,ms,X,Z,rep\n",
+          ":1: column torque: missing, expected a header of mu, rho, dig, ms, torque" },
         { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,1,1\n",
-          ":2: expected 8 fields as in the header" },
+          ":2: column Z: the line has 6 fields, expected 8 as in the header" },
         { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,nan,1,1,0\n",
           ":2: column torque: \"nan\", expected a finite number" },
         { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,,0,1,1,1,0\n",
           ":2: column rho: \"\", expected a finite number" },
         { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,0,1,1,1,.5\n",
-          ":2: column rep: \".5\", expected a whole number from 0" },
+          ":2: column rep: 0.5, expected a whole number from 0" },
         { "dig,mu,rho,ms,torque,X,Z,rep\n$(pull),.3,2.5,0,1,1,1,0\n",
           ":2: column dig: \"$(pull)\", expected a name of letters" },
         { "dig,mu,rho,ms,torque,X,Z,rep\n,.3,2.5,0,1,1,1,0\n",
           ":2: column dig: \"\", expected a name" },
-        { "dig,mu,rho,ms,torque,X,Z,rep\n", ":1: no samples, expected at least one dig" },
-        { "", ":1: no samples" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\n", ":1: no row of numbers, expected a header of mu," },
+        { "", ":1: no header, expected a header of mu," },
+        { "dig,mu,rho,ms,torque,X,Z,rep,mu\n", ":1: column mu: given twice, expected once" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct seen      seen  = { .digs = 0 };
@@ -171,11 +173,11 @@ TEST(a_depth_or_attack_that_cannot_be_is_refused_by_its_line)
     const struct dig_curve_map map =
         map_of(HEAD "  My_Nm: {value: 1}\n  depth: {column: deep}\n  attack_deg: {column: turn}\n");
     static const char *const bad[][2] = {
-        { "0.1,0", ":3: column deep: \"0.1\", expected a factor of 0.2 to 3" },
-        { "0,0", ":3: column deep: \"0\", expected a factor of 0.2 to 3" },
-        { "3.5,0", ":3: column deep: \"3.5\", expected a factor of 0.2 to 3" },
-        { "1,-46", ":3: column turn: \"-46\", expected -45 to 45 deg" },
-        { "1,45.1", ":3: column turn: \"45.1\", expected -45 to 45 deg" },
+        { "0.1,0", ":3: column deep: 0.1, expected a factor of 0.2 to 3" },
+        { "0,0", ":3: column deep: 0, expected a factor of 0.2 to 3" },
+        { "3.5,0", ":3: column deep: 3.5, expected a factor of 0.2 to 3" },
+        { "1,-46", ":3: column turn: -46, expected -45 to 45 deg" },
+        { "1,45.1", ":3: column turn: 45.1, expected -45 to 45 deg" },
         { "1,steep", ":3: column turn: \"steep\", expected a finite number" },
         { "inf,0", ":3: column deep: \"inf\", expected a finite number" },
     };
@@ -199,6 +201,11 @@ TEST(what_is_no_map_is_refused_by_its_key)
         { HEAD "  My_Nm: {factor: 2}\n",
           ":12: columns.My_Nm: expected either a column or a value" },
         { HEAD "  My_Nm: {column: a, value: 3}\n", "columns.My_Nm: expected either a column or" },
+        { "scene: a\nengine: b\nversion: c\ncolumns:\n  friction: {value: 1}\n  rolling: {value: "
+          "1}\n"
+          "  density_kgpm3: {value: 1}\n  trajectory: {value: a}\n  t_s: {value: 1}\n"
+          "  My_Nm: {value: 1}\n  Fx_N: {value: 1}\n  Fz_N: {value: 1}\n",
+          ":9: columns.t_s: a value, expected a column" },
         { HEAD "  My_Nm: {column: a}\n  Mz_Nm: {column: b}\n", "columns.Mz_Nm: unknown key" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

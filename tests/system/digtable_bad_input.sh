@@ -44,7 +44,7 @@ refused "import of a CSV with a text" 'curves.csv:3: column Fz_N: "one", expecte
   printf '  depth: {column: depth}\n  attack_deg: {column: attack_deg}\n'; } >"$work/map.yaml"
 cp $scene "$work/low.yaml"
 sed -i 's/one,1,1,0/1,1,3.2,0/' "$work/curves.csv"
-refused "import of a dig too deep" 'curves.csv:3: column depth: "3.2", expected a factor of 0.2 to 3' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
+refused "import of a dig too deep" 'curves.csv:3: column depth: 3.2, expected a factor of 0.2 to 3' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
 refused "merge without inputs" "expected OUT.sqlite IN" merge "$out"
 refused "an engine that is not built in" "--engine edem: expected single, kernel, ode or cuda" generate $scene $grid --engine edem -o "$out"
 refused "threads of an engine without" "--threads: only --engine single and cuda have them" dig $scene --engine kernel --threads 2 -o "$out"
