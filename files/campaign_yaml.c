@@ -5,25 +5,9 @@
 #include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
-#include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-struct recording_text {
-    char          file[DIG_CAMPAIGN_PATH];
-    char          trajectory[DIG_NAME_SIZE];
-    enum dig_role role;
-    uint32_t      pass; // 0: not given
-};
-
-struct campaign_text {
-    char                  scene[DIG_CAMPAIGN_PATH];
-    char                  machine[DIG_CAMPAIGN_PATH];
-    struct recording_text recordings[DIG_CAMPAIGN_MAX];
-    uint32_t              recordings_count;
-};
 
 static const cyaml_strval_t roles[] = {
     { "identify", DIG_ROLE_IDENTIFY },
@@ -32,38 +16,36 @@ static const cyaml_strval_t roles[] = {
 };
 
 static const cyaml_schema_field_t recording_fields[] = {
-    TEXT(recording_text, file),
-    TEXT(recording_text, trajectory),
-    CYAML_FIELD_ENUM("role", CYAML_FLAG_STRICT, struct recording_text, role, roles,
+    TEXT(dig_campaign_recording, file),
+    TEXT(dig_campaign_recording, trajectory),
+    CYAML_FIELD_ENUM("role", CYAML_FLAG_STRICT, struct dig_campaign_recording, role, roles,
                      sizeof roles / sizeof roles[0]),
-    CYAML_FIELD_UINT("pass", OPTIONAL, struct recording_text, pass),
+    CYAML_FIELD_UINT("pass", OPTIONAL, struct dig_campaign_recording, pass),
     CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t recording = ENTRY(recording_text, recording_fields);
+static const cyaml_schema_value_t recording = ENTRY(dig_campaign_recording, recording_fields);
 
 static const cyaml_schema_field_t fields[] = {
-    TEXT(campaign_text, scene),
-    CYAML_FIELD_STRING("machine", OPTIONAL, struct campaign_text, machine, 0),
-    CYAML_FIELD_SEQUENCE("recordings", REQUIRED, struct campaign_text, recordings, &recording, 1,
-                         DIG_CAMPAIGN_MAX),
+    TEXT(dig_campaign, scene),
+    CYAML_FIELD_STRING("machine", OPTIONAL, struct dig_campaign, machine, 0),
+    LIST("recordings", REQUIRED, dig_campaign, recording, recordings, &recording, 1,
+         DIG_CAMPAIGN_MAX),
     SOURCE,
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t schema = FILE_OF(campaign_text, fields);
+static const cyaml_schema_value_t schema = FILE_OF(dig_campaign, fields);
 
-// Puts the campaign's folder before a relative path. False when the result is too long, or the name
-// is none.
-static bool resolve(const char *const yaml, const char *const name, char path[DIG_CAMPAIGN_PATH])
+// Puts the campaign's folder before a relative path.
+static enum dig_status resolve(const char *const yaml, const char *const key,
+                               char path[const DIG_CAMPAIGN_PATH], struct dig_error *const error)
 {
-    return dig_path_ok(name) && dig_path_beside(yaml, name, DIG_CAMPAIGN_PATH, path);
-}
-
-static enum dig_status refuse_path(const char *const yaml, const char *const key,
-                                   const char *const name, struct dig_error *const error)
-{
-    return dig_yaml_refuse(yaml, error, "%s: \"%s\", expected " DIG_PATH_RULE " and shorter", key,
-                           name);
+    char name[DIG_CAMPAIGN_PATH];
+    memcpy(name, path, sizeof name);
+    return dig_path_ok(name) && dig_path_beside(yaml, name, sizeof name, path)
+               ? DIG_OK
+               : dig_yaml_refuse(yaml, error, "%s: \"%s\", expected " DIG_PATH_RULE " and shorter",
+                                 key, name);
 }
 
 // A recording comes with its campaign: a folder from elsewhere shall reach no other by "..", and a
@@ -85,38 +67,38 @@ static enum dig_status check_recording(const char *const yaml, const char *const
                                  name);
 }
 
-static enum dig_status convert(const char *const yaml, const struct campaign_text *const text,
-                               struct dig_campaign *const campaign, struct dig_error *const error)
+static enum dig_status convert_recording(const char *const yaml, const size_t i,
+                                         struct dig_campaign_recording *const r,
+                                         struct dig_error *const              error)
 {
-    if (!resolve(yaml, text->scene, campaign->scene)) {
-        return refuse_path(yaml, "scene", text->scene, error);
+    char key[64];
+    char name[DIG_CAMPAIGN_PATH];
+    (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
+    memcpy(name, r->file, sizeof name);
+    enum dig_status status = resolve(yaml, key, r->file, error);
+    if (status == DIG_OK) {
+        status = check_recording(yaml, key, name, r->file, error);
     }
-    if (text->machine[0] != '\0' && !resolve(yaml, text->machine, campaign->machine)) {
-        return refuse_path(yaml, "machine", text->machine, error);
+    if (status == DIG_OK && !dig_name_ok(r->trajectory)) {
+        status = dig_yaml_refuse(yaml, error,
+                                 "recordings[%zu].trajectory: \"%s\", expected " DIG_NAME_RULE, i,
+                                 r->trajectory);
     }
-    campaign->recordings = text->recordings_count;
-    for (size_t i = 0; i < campaign->recordings; i++) {
-        const struct recording_text *const   from = &text->recordings[i];
-        struct dig_campaign_recording *const to   = &campaign->recording[i];
-        char                                 key[64];
-        (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
-        if (!resolve(yaml, from->file, to->file)) {
-            return refuse_path(yaml, key, from->file, error);
-        }
-        const enum dig_status status = check_recording(yaml, key, from->file, to->file, error);
-        if (status != DIG_OK) {
-            return status;
-        }
-        if (!dig_name_ok(from->trajectory)) {
-            return dig_yaml_refuse(yaml, error,
-                                   "recordings[%zu].trajectory: \"%s\", expected " DIG_NAME_RULE, i,
-                                   from->trajectory);
-        }
-        memcpy(to->trajectory, from->trajectory, sizeof to->trajectory);
-        to->role = from->role;
-        to->pass = from->pass == 0 ? 1 : from->pass;
+    r->pass = r->pass == 0 ? 1 : r->pass;
+    return status;
+}
+
+static enum dig_status convert(const char *const yaml, struct dig_campaign *const campaign,
+                               struct dig_error *const error)
+{
+    enum dig_status status = resolve(yaml, "scene", campaign->scene, error);
+    if (status == DIG_OK && campaign->machine[0] != '\0') {
+        status = resolve(yaml, "machine", campaign->machine, error);
     }
-    return DIG_OK;
+    for (size_t i = 0; status == DIG_OK && i < campaign->recordings; i++) {
+        status = convert_recording(yaml, i, &campaign->recording[i], error);
+    }
+    return status;
 }
 
 bool dig_campaign_is(const char *const path)
@@ -141,17 +123,10 @@ enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign 
     if (status != DIG_OK) {
         return status;
     }
-    // About a hundred kilobytes: too much for a stack that may be a thread's.
-    struct dig_campaign *const loaded = calloc(1, sizeof *loaded);
-    if (loaded == NULL) {
-        dig_yaml_free(&schema, data);
-        return dig_error_set(error, DIG_ENOMEM, "%s", yaml);
-    }
-    status = convert(yaml, data, loaded, error);
+    status = convert(yaml, data, error);
     if (status == DIG_OK) {
-        *campaign = *loaded;
+        *campaign = *(const struct dig_campaign *)data;
     }
-    free(loaded);
     dig_yaml_free(&schema, data);
     return status;
 }

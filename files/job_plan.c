@@ -4,55 +4,46 @@
 #include "core/name.h"
 #include "files/text/whole.h"
 #include "files/yaml/yaml.h"
+#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
-#include <stdint.h>
-#include <string.h>
+#include <stdio.h>
 
 #define BEDS_MAX 10000000
 
-struct plan_text {
-    char     job[DIG_JOB_TEXT_SIZE];
-    char     digs_sha256[65];
-    char     engine[DIG_JOB_TEXT_SIZE];
-    char     version[DIG_JOB_TEXT_SIZE];
-    uint32_t tasks, beds, trajectories;
-};
-
-#define REQUIRED CYAML_FLAG_DEFAULT
+#define WHOLE(member) CYAML_FIELD_UINT(#member, REQUIRED, struct dig_job_plan, member)
 
 static const cyaml_schema_field_t fields[] = {
-    CYAML_FIELD_STRING("job", REQUIRED, struct plan_text, job, 1),
-    CYAML_FIELD_STRING("digs_sha256", REQUIRED, struct plan_text, digs_sha256, 64),
-    CYAML_FIELD_STRING("engine", REQUIRED, struct plan_text, engine, 1),
-    CYAML_FIELD_STRING("version", REQUIRED, struct plan_text, version, 1),
-    CYAML_FIELD_UINT("tasks", REQUIRED, struct plan_text, tasks),
-    CYAML_FIELD_UINT("beds", REQUIRED, struct plan_text, beds),
-    CYAML_FIELD_UINT("trajectories", REQUIRED, struct plan_text, trajectories),
+    TEXT(dig_job_plan, job),
+    CYAML_FIELD_STRING("digs_sha256", REQUIRED, struct dig_job_plan, digs_sha256, 64),
+    TEXT(dig_job_plan, engine),
+    TEXT(dig_job_plan, version),
+    WHOLE(tasks),
+    WHOLE(beds),
+    WHOLE(trajectories),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER,
-                                                                 struct plan_text, fields) };
+static const cyaml_schema_value_t schema = FILE_OF(dig_job_plan, fields);
 
-static enum dig_status check(const char *const path, const struct plan_text *const text,
+static enum dig_status check(const char *const path, const struct dig_job_plan *const plan,
                              struct dig_error *const error)
 {
     // It stands in command lines and is what a queue is asked for.
-    if (!dig_name_ok(text->job)) {
-        return dig_yaml_refuse(path, error, "job: \"%s\", expected " DIG_NAME_RULE, text->job);
+    if (!dig_name_ok(plan->job)) {
+        return dig_yaml_refuse(path, error, "job: \"%s\", expected " DIG_NAME_RULE, plan->job);
     }
-    if (text->tasks < 1 || text->tasks > DIG_JOB_TASKS_MAX) {
-        return dig_yaml_refuse(path, error, "tasks: %u, expected 1 to %d", text->tasks,
+    if (plan->tasks < 1 || plan->tasks > DIG_JOB_TASKS_MAX) {
+        return dig_yaml_refuse(path, error, "tasks: %zu, expected 1 to %d", plan->tasks,
                                DIG_JOB_TASKS_MAX);
     }
-    if (text->beds < text->tasks || text->beds > BEDS_MAX) {
-        return dig_yaml_refuse(path, error, "beds: %u, expected %u (the tasks) to %d", text->beds,
-                               text->tasks, BEDS_MAX);
+    if (plan->beds < plan->tasks || plan->beds > BEDS_MAX) {
+        return dig_yaml_refuse(path, error, "beds: %zu, expected %zu (the tasks) to %d", plan->beds,
+                               plan->tasks, BEDS_MAX);
     }
-    if (text->trajectories < 1 || text->trajectories > DIG_TRAJECTORY_MAX) {
-        return dig_yaml_refuse(path, error, "trajectories: %u, expected 1 to %d",
-                               text->trajectories, DIG_TRAJECTORY_MAX);
+    if (plan->trajectories < 1 || plan->trajectories > DIG_TRAJECTORY_MAX) {
+        return dig_yaml_refuse(path, error, "trajectories: %zu, expected 1 to %d",
+                               plan->trajectories, DIG_TRAJECTORY_MAX);
     }
     return DIG_OK;
 }
@@ -66,17 +57,9 @@ enum dig_status dig_job_plan_read(const char *const path, struct dig_job_plan *c
     if (status != DIG_OK) {
         return status;
     }
-    const struct plan_text *const text = data;
-    status                             = check(path, text, error);
+    status = check(path, data, error);
     if (status == DIG_OK) {
-        struct dig_job_plan read = { .tasks        = text->tasks,
-                                     .beds         = text->beds,
-                                     .trajectories = text->trajectories };
-        memcpy(read.job, text->job, sizeof read.job);
-        memcpy(read.digs_sha256, text->digs_sha256, sizeof read.digs_sha256);
-        memcpy(read.engine, text->engine, sizeof read.engine);
-        memcpy(read.version, text->version, sizeof read.version);
-        *plan = read;
+        *plan = *(const struct dig_job_plan *)data;
     }
     dig_yaml_free(&schema, data);
     return status;
