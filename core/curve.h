@@ -123,6 +123,7 @@ struct dig_table_step {
 };
 
 struct dig_entry_set; // core/entry_set.h
+struct dig_outline;   // core/outline.h
 
 /// A whole table in memory, flat and read-only. curve[entry * trajectories + trajectory]; an entry
 /// that lacks a trajectory has packings 0 there.
@@ -141,6 +142,12 @@ struct dig_curve_set {
     struct dig_gravel    *gravel;   // [entries]
     int                  *packings; // [entries * trajectories]
     struct dig_curve     *curve;    // [entries * trajectories]
+    // dig_outlines_draw(): of each channel of each curve, [DIG_FORCE_CHANNELS * entries *
+    // trajectories]; and of each trajectory the mean squared scatter of one dig in each block of a
+    // covariance, relative to the mean square of the curve, averaged over the entries; 0 when there
+    // is none.
+    struct dig_outline *outline;
+    double              relative2[DIG_TRAJECTORY_MAX][DIG_COVARIANCE_NUMBERS];
     // The full grid behind the entries: axis values ascending; cell[i] is the entry at that grid
     // index (friction slowest, density fastest) or -1 where the table has a hole.
     size_t  axis_count[DIG_AXES];

@@ -23,8 +23,8 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
 core                   approach bed bed_plan command_line contact curve did_you_mean effect entry_set error geometry
-                       gravel_match ground help linkage log_normal machine model name observation part recording
-                       regular sample scene sha256 shell similar sort status table_step text units vec2
+                       gravel_match ground help linkage log_normal machine model name observation outline part
+                       recording regular sample scene sha256 shell similar sort status table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
@@ -37,7 +37,7 @@ estimator/track        inertia_error phase recorded_dig route settings track win
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
                        approach_response interpolate live_recording observe_dig | laid
 estimator/effects      effect template
-estimator/match        depth match pool prefilter | entry_scatter
+estimator/match        depth match pool | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
 tables/schema          | canonical_scene schema seal
 tables                 derive export listed load merge queue scene store

@@ -1,5 +1,6 @@
 #include "tables/load.h"
 
+#include "core/outline.h"
 #include "core/sort.h"
 #include "tables/density_scale.h"
 #include "tables/grounds.h"
@@ -100,7 +101,9 @@ static enum dig_status fill(struct dig_curve_set *const set, struct dig_entry_se
     plain->packings = NULL;
     plain->curve    = NULL;
     set->gravel     = calloc(set->entries + 1, sizeof *set->gravel);
-    bool complete   = set->gravel != NULL;
+    set->outline =
+        calloc(DIG_FORCE_CHANNELS * set->entries * set->trajectories + 1, sizeof *set->outline);
+    bool complete = set->gravel != NULL && set->outline != NULL;
     for (int a = 0; a < DIG_AXES; a++) {
         set->axis[a] = calloc(set->entries + 1, sizeof *set->axis[a]);
         complete     = complete && set->axis[a] != NULL;
@@ -111,6 +114,7 @@ static enum dig_status fill(struct dig_curve_set *const set, struct dig_entry_se
     for (size_t i = 0; i < set->entries; i++) {
         set->gravel[i] = plain->entry[i].gravel;
     }
+    dig_outlines_draw(set);
     return build_grid(set, path, error);
 }
 
@@ -151,6 +155,7 @@ void dig_curve_set_destroy(struct dig_curve_set *const set)
         free(set->gravel);
         free(set->packings);
         free(set->curve);
+        free(set->outline);
         for (int a = 0; a < DIG_AXES; a++) {
             free(set->axis[a]);
         }

@@ -109,6 +109,7 @@ static inline void approach_table_init(struct approach_table *const table, const
             }
         }
     }
+    dig_outlines_draw(set);
 }
 
 #endif // DIG_TESTS_APPROACH_TABLE_H

@@ -5,6 +5,7 @@
 #define DIG_TESTS_CUBE_TABLE_H
 
 #include "core/curve.h"
+#include "core/outline.h"
 
 #define CUBE_GRAVELS 8
 
@@ -15,11 +16,12 @@ struct cube_table {
     int                  cell[CUBE_GRAVELS];
     int                  packings[CUBE_GRAVELS * DIG_TRAJECTORY_MAX];
     struct dig_curve     curve[CUBE_GRAVELS * DIG_TRAJECTORY_MAX];
+    struct dig_outline   outline[DIG_FORCE_CHANNELS * CUBE_GRAVELS * DIG_TRAJECTORY_MAX];
 };
 
 /// Fills in axes and gravels, and hangs the arrays into the set. Of a gravel's number the first of
 /// three bits is friction, the last density. Trajectories and scales of the set, packings and
-/// curves are left as they are.
+/// curves are left as they are; dig_outlines_draw() once they are filled in.
 static inline void cube_table_init(struct cube_table *const cube)
 {
     struct dig_curve_set *const set = &cube->set;
@@ -27,6 +29,7 @@ static inline void cube_table_init(struct cube_table *const cube)
     set->gravel                     = cube->gravel;
     set->packings                   = cube->packings;
     set->curve                      = cube->curve;
+    set->outline                    = cube->outline;
     set->cell                       = cube->cell;
     for (int axis = 0; axis < DIG_AXES; axis++) {
         cube->axis[axis][0]   = axis == DIG_AXIS_DENSITY_kgpm3 ? 1500.0 : 0.3;

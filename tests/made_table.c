@@ -1,5 +1,6 @@
 #include "tests/made_table.h"
 
+#include "core/outline.h"
 #include "core/units.h"
 #include "tests/model_front.h"
 
@@ -113,6 +114,7 @@ struct dig_curve_set *made_table(const struct made_options *const options)
     set->gravel   = calloc(points, sizeof *set->gravel);
     set->packings = calloc(points * MADE_TRAJECTORIES, sizeof *set->packings);
     set->curve    = calloc(points * MADE_TRAJECTORIES, sizeof *set->curve);
+    set->outline  = calloc(DIG_FORCE_CHANNELS * points * MADE_TRAJECTORIES, sizeof *set->outline);
     set->cell     = calloc(points, sizeof *set->cell);
     for (size_t p = 0; p < points; p++) {
         const size_t density  = p % counts[2];
@@ -132,6 +134,7 @@ struct dig_curve_set *made_table(const struct made_options *const options)
                  options);
         }
     }
+    dig_outlines_draw(set);
     return set;
 }
 
@@ -146,6 +149,7 @@ void made_table_destroy(struct dig_curve_set *const set)
     free(set->gravel);
     free(set->packings);
     free(set->curve);
+    free(set->outline);
     free(set->cell);
     free(set);
 }

@@ -1,5 +1,6 @@
 #include "estimator/approach/approached.h"
 
+#include "core/outline.h"
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_response.h"
 #include "estimator/approach/approaches.h"
@@ -13,7 +14,7 @@
 // The parts of the memory, each aligned for its type. The responses of the entries that were dug so
 // serve one slot after the other.
 struct layout {
-    size_t packings, curve, covariance, own, response, whole;
+    size_t packings, curve, outline, covariance, own, response, whole;
 };
 
 static size_t up_to(const size_t offset, const size_t alignment)
@@ -33,9 +34,11 @@ static struct layout lay_out(const struct dig_curve_set *const set, const size_t
     const size_t  n = set->entries * slots;
     struct layout l = { .packings = up_to(sizeof(struct dig_curve_set), _Alignof(int)) };
     l.curve         = up_to(l.packings + n * sizeof(int), _Alignof(struct dig_curve));
-    l.covariance = up_to(l.curve + n * sizeof(struct dig_curve), _Alignof(struct dig_covariance));
-    l.own        = up_to(l.covariance + slots * sizeof(struct dig_covariance),
-                         _Alignof(struct dig_response *));
+    l.outline       = up_to(l.curve + n * sizeof(struct dig_curve), _Alignof(struct dig_outline));
+    l.covariance    = up_to(l.outline + DIG_FORCE_CHANNELS * n * sizeof(struct dig_outline),
+                            _Alignof(struct dig_covariance));
+    l.own           = up_to(l.covariance + slots * sizeof(struct dig_covariance),
+                            _Alignof(struct dig_response *));
     l.response =
         up_to(l.own + set->entries * sizeof(struct dig_response *), _Alignof(struct dig_response));
     l.whole = l.response + dug_otherwise(set) * sizeof(struct dig_response);
@@ -201,6 +204,7 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
     made->trajectories                         = slots;
     made->packings                             = (int *)(void *)(at + l.packings);
     made->curve                                = (struct dig_curve *)(void *)(at + l.curve);
+    made->outline                              = (struct dig_outline *)(void *)(at + l.outline);
     const struct dig_response **const own      = (const struct dig_response **)(void *)(at + l.own);
     struct dig_response *const        response = (struct dig_response *)(void *)(at + l.response);
     struct dig_covariance *const covariance = (struct dig_covariance *)(void *)(at + l.covariance);
@@ -220,5 +224,6 @@ const struct dig_curve_set *dig_approached_make(const struct dig_curve_set *cons
         }
         fill_slot(set, &wanted, &measured, s, response, own, made);
     }
+    dig_outlines_draw(made);
     return made;
 }

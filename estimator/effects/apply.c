@@ -2,6 +2,8 @@
 
 #include "estimator/effects/effect.h"
 
+#include "core/outline.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -111,5 +113,6 @@ enum dig_status dig_effects_apply(const struct dig_curve_set *const plain,
             }
         }
     }
+    dig_outlines_draw(out);
     return applied > 0 ? DIG_OK : DIG_ENOMATCH;
 }

@@ -23,7 +23,6 @@ static const double no_curve = 1e6;
 // The fit in positions 0 … 1 along the axes that have more than one point.
 struct problem {
     const struct dig_curve_set *set;
-    const struct dig_prefilter *prefilter; // or NULL
     const struct dig_pool_sums *sums;
     unsigned                    dimensions;
     enum dig_axis               axis[DIG_AXES];
@@ -90,8 +89,7 @@ static double excess_of(const unsigned n, const double *const x, double *const g
     (void)gradient;
     const struct problem *const problem = context;
     const struct dig_gravel     gravel  = gravel_of(problem, x);
-    return fmin(dig_posterior_excess(problem->set, problem->prefilter, problem->sums, &gravel),
-                no_curve);
+    return fmin(dig_posterior_excess(problem->set, problem->sums, &gravel), no_curve);
 }
 
 // Starting points, the best first.
@@ -226,17 +224,15 @@ static bool has_forces(const struct dig_pool_sums *const sums)
 // Whether the gravel is outside the table by the forces. The most probable gravel lies on a grid,
 // which may be too coarse for digs of little scatter: then its surroundings are searched too.
 static enum dig_status contradict(const struct dig_curve_set *const set,
-                                  const struct dig_prefilter *const prefilter,
                                   const struct dig_pool_sums *const sums,
                                   const struct dig_match *const     match,
                                   const struct dig_gravel *const mode, bool *const contradicted)
 {
-    double least = dig_posterior_excess(set, prefilter, sums, mode);
+    double least = dig_posterior_excess(set, sums, mode);
     if (least > DIG_POSTERIOR_OUTSIDE) {
         static const double step[DIG_AXES] = { 0.04, 0.04, 0.04 };
         struct problem      problem        = make_problem(set, sums, match);
         double              x[DIG_AXES]    = { 0.0 };
-        problem.prefilter                  = prefilter;
         position_of(&problem, mode, x);
         const enum dig_status status =
             problem.dimensions > 0
@@ -253,33 +249,31 @@ static enum dig_status contradict(const struct dig_curve_set *const set,
 // The posterior. Where no gravel of the table fits both moment and forces, that of the moment alone
 // predicts the next dig better than a compromise.
 static enum dig_status fill_posterior(const struct dig_curve_set *const set,
-                                      const struct dig_prefilter *const prefilter,
                                       struct dig_pool_sums *const       sums,
                                       struct dig_match *const refined, bool *const contradicted)
 {
     *contradicted          = false;
-    enum dig_status status = dig_posterior_fill(set, prefilter, sums, refined);
+    enum dig_status status = dig_posterior_fill(set, sums, refined);
     if (status == DIG_OK && has_forces(sums)) {
-        status = contradict(set, prefilter, sums, refined, &refined->mode, contradicted);
+        status = contradict(set, sums, refined, &refined->mode, contradicted);
     }
     if (*contradicted) {
         for (size_t g = 0; g < sums->groups; g++) {
             sums->group[g].forces = false;
         }
-        status = dig_posterior_fill(set, prefilter, sums, refined);
+        status = dig_posterior_fill(set, sums, refined);
     }
     return status;
 }
 
 static enum dig_status refine(const struct dig_curve_set *const set,
-                              const struct dig_prefilter *const prefilter,
                               struct dig_pool_sums *const sums, const int max_evaluations,
                               struct dig_match *const match)
 {
     // A table of scattered points has no cell, so no posterior: the nearest entry stands.
     struct dig_match      refined = *match;
     bool                  contradicted;
-    const enum dig_status judged = fill_posterior(set, prefilter, sums, &refined, &contradicted);
+    const enum dig_status judged = fill_posterior(set, sums, &refined, &contradicted);
     if (judged != DIG_OK && judged != DIG_ENOMATCH) {
         return judged;
     }
@@ -333,18 +327,16 @@ static enum dig_status refine(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-enum dig_status dig_fit_refine(const struct dig_curve_set *const set,
-                               const struct dig_prefilter *const prefilter, const size_t digs,
+enum dig_status dig_fit_refine(const struct dig_curve_set *const set, const size_t digs,
                                const struct dig_observation dig[], const int max_evaluations,
                                struct dig_match *const match)
 {
     assert(set != NULL && dig != NULL && match != NULL);
-    assert(prefilter == NULL || prefilter->set == set);
     if (!match->valid || match->nearest < 0 || (size_t)match->nearest >= set->entries ||
         max_evaluations < 1 || digs < 1 || dig_observations_check(set, digs, dig) != DIG_OK) {
         return DIG_EINVAL;
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
-    return refine(set, prefilter, &sums, max_evaluations, match);
+    return refine(set, &sums, max_evaluations, match);
 }

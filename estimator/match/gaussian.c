@@ -1,12 +1,12 @@
 #include "estimator/match/gaussian.h"
 
+#include "core/outline.h"
 #include "core/units.h"
 #include "estimator/match/entry_scatter.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
-#include <string.h>
 
 enum {
     BLOCKS   = DIG_COVARIANCE_BLOCKS,
@@ -87,8 +87,7 @@ static double between(const double point_m, const double width_m, const int lag)
 
 // The same by entry_scatter.h, where there are too few packings; the variances into *variance.
 static void assume_correlation(const struct dig_curve_set *const set, const size_t trajectory,
-                               const struct dig_prefilter *const prefilter, struct matrix *const c,
-                               double variance[NUMBERS])
+                               struct matrix *const c, double variance[NUMBERS])
 {
     const double across[CHANNELS][CHANNELS] = {
         { 1.0, DIG_ENTRY_SCATTER_MY_FX, DIG_ENTRY_SCATTER_MY_FZ },
@@ -103,13 +102,8 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
     for (int lag = 0; lag < BLOCKS; lag++) {
         lag_of[lag] = between(point_m, width_m, lag);
     }
-    if (prefilter != NULL) {
-        memcpy(variance, prefilter->relative2[trajectory], NUMBERS * sizeof *variance);
-    } else {
-        dig_prefilter_relative2(set, trajectory, variance);
-    }
     for (size_t i = 0; i < NUMBERS; i++) {
-        variance[i] *= lag_of[0];
+        variance[i] = set->relative2[trajectory][i] * lag_of[0];
         for (size_t j = 0; j < NUMBERS; j++) {
             const size_t one   = i % BLOCKS;
             const size_t other = j % BLOCKS;
@@ -217,13 +211,11 @@ static void measure(const struct dig_pooled *const group, const double variance[
     }
 }
 
-void dig_gaussian_make(const struct dig_curve_set *const set,
-                       const struct dig_prefilter *const prefilter,
-                       const struct dig_pooled *const group, struct dig_gaussian *const g)
+void dig_gaussian_make(const struct dig_curve_set *const set, const struct dig_pooled *const group,
+                       struct dig_gaussian *const g)
 {
-    assert(set != NULL && (prefilter == NULL || prefilter->set == set) && group != NULL &&
-           g != NULL);
-    *g = (struct dig_gaussian){ .prefilter  = prefilter,
+    assert(set != NULL && set->outline != NULL && group != NULL && g != NULL);
+    *g = (struct dig_gaussian){ .set        = set,
                                 .trajectory = group->trajectory,
                                 .channels   = group->forces ? CHANNELS : 1 };
     struct matrix c;
@@ -234,7 +226,7 @@ void dig_gaussian_make(const struct dig_curve_set *const set,
             variance[i] = set->covariance[group->trajectory].of[i][i];
         }
     } else {
-        assume_correlation(set, group->trajectory, prefilter, &c, variance);
+        assume_correlation(set, group->trajectory, &c, variance);
     }
     measure(group, variance, g);
     if (g->numbers > 0 && !factor(&c, g)) {
@@ -253,15 +245,9 @@ static void blend(const struct dig_gaussian *const g, const struct dig_cell *con
     }
     for (size_t i = 0; i < cell->corners; i++) {
         const double weight = cell->weight[i];
+        const size_t slot   = (size_t)(cell->curve[i] - g->set->curve);
         for (size_t c = 0; c < g->channels; c++) {
-            struct dig_outline drawn;
-            const float       *of = drawn.block;
-            if (g->prefilter != NULL) {
-                of = dig_outline_mean(g->prefilter, c,
-                                      (size_t)(cell->curve[i] - g->prefilter->set->curve));
-            } else {
-                dig_outline_draw(cell->curve[i]->mean[c], &drawn);
-            }
+            const float *const of = dig_outline_mean(g->set, c, slot);
             for (size_t h = 0; h < HALVES; h++) {
                 mean[c][h] += weight * (double)of[h];
             }

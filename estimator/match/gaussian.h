@@ -23,7 +23,6 @@
 #include "core/curve.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/pool.h"
-#include "estimator/match/prefilter.h"
 
 #include <stdbool.h>
 
@@ -33,7 +32,7 @@
 
 /// Of the digs along one trajectory; does not depend on the gravel. 6 kB.
 struct dig_gaussian {
-    const struct dig_prefilter *prefilter; // NULL: none
+    const struct dig_curve_set *set;
     size_t                      trajectory, channels;
     size_t                      numbers; // compared
     struct dig_compared {
@@ -46,11 +45,10 @@ struct dig_gaussian {
     double lower[DIG_COVARIANCE_NUMBERS][DIG_COVARIANCE_NUMBERS];
 };
 
-/// Compares nothing (numbers is 0) when no half of a block was measured completely. The set, and
-/// the prefilter of it where one is given, must outlive it. 30 microseconds; of few packings and
-/// without a prefilter it reads every curve of the trajectory.
-void dig_gaussian_make(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
-                       const struct dig_pooled *group, struct dig_gaussian *gaussian);
+/// Compares nothing (numbers is 0) when no half of a block was measured completely. The set
+/// must outlive it. 30 microseconds.
+void dig_gaussian_make(const struct dig_curve_set *set, const struct dig_pooled *group,
+                       struct dig_gaussian *gaussian);
 
 /// Squared Mahalanobis distance of digs from a cell of the trajectory.
 struct dig_mahalanobis {
@@ -58,7 +56,7 @@ struct dig_mahalanobis {
     double log_det; // of D, up to a constant
 };
 
-/// About a microsecond with a prefilter, four without.
+/// Of a cell of the set. About a microsecond.
 struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *gaussian,
                                                 const struct dig_cell     *cell);
 

@@ -1,7 +1,6 @@
 #include "estimator/match/likelihood.h"
 
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/prefilter.h"
 
 #include <assert.h>
 #include <math.h>
@@ -10,7 +9,7 @@
 // then compilers work on several points at once.
 enum { STRIDE = 16 };
 enum { COARSE = 9, COARSE_DENSITY = 7 }; // points of an axis
-enum { ALL_COARSE = COARSE * COARSE * COARSE_DENSITY, NUMBERS = DIG_COVARIANCE_NUMBERS };
+enum { ALL_COARSE = COARSE * COARSE * COARSE_DENSITY };
 _Static_assert(DIG_CURVE_POINTS % STRIDE == 0, "whole strides");
 
 // Weight of the pooled spread against an entry's own, in packings.
@@ -190,10 +189,9 @@ void dig_likelihood_make(const struct dig_curve_set *const set,
     assert(set != NULL && group != NULL && l != NULL);
     *l = (struct dig_likelihood){ .trajectory = group->trajectory,
                                   .channels   = group->forces ? DIG_FORCE_CHANNELS : 1 };
-    double relative2[NUMBERS];
-    dig_prefilter_relative2(set, group->trajectory, relative2);
-    for (size_t n = 0; n < NUMBERS; n++) {
-        l->relative2[n / DIG_COVARIANCE_BLOCKS] += relative2[n] / DIG_COVARIANCE_BLOCKS;
+    for (size_t n = 0; n < DIG_COVARIANCE_NUMBERS; n++) {
+        l->relative2[n / DIG_COVARIANCE_BLOCKS] +=
+            set->relative2[group->trajectory][n] / DIG_COVARIANCE_BLOCKS;
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double n = group->count[k];

@@ -42,7 +42,6 @@ struct dig_likelihood {
     double sigma2[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
-/// Reads every curve of the trajectory: O(entries).
 void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_pooled *group,
                          struct dig_likelihood *likelihood);
 

@@ -134,37 +134,18 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
     return dig_misfit_distance(&all);
 }
 
-// The entry nearest to all digs, the first of several; -1: none.
-static int nearest_of_all(const struct dig_curve_set *const set,
-                          const struct dig_pool_sums *const sums)
-{
-    int    nearest = -1;
-    double least   = INFINITY;
-    for (size_t e = 0; e < set->entries; e++) {
-        const double distance = entry_distance(set, e, sums).distance;
-        if (distance < least) {
-            least   = distance;
-            nearest = (int)e;
-        }
-    }
-    return nearest;
-}
-
-enum dig_status dig_match_nearest(const struct dig_curve_set *const set,
-                                  const struct dig_prefilter *const prefilter, const size_t digs,
+enum dig_status dig_match_nearest(const struct dig_curve_set *const set, const size_t digs,
                                   const struct dig_observation dig[], const double outside_floors,
                                   struct dig_match *const match)
 {
     assert(set != NULL && dig != NULL && match != NULL);
-    assert(prefilter == NULL || prefilter->set == set);
     if (digs < 1 || !(outside_floors > 0.0) || dig_observations_check(set, digs, dig) != DIG_OK) {
         return DIG_EINVAL;
     }
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
 
-    const int nearest =
-        prefilter != NULL ? dig_nearest_find(prefilter, &sums) : nearest_of_all(set, &sums);
+    const int nearest = dig_nearest_find(set, &sums);
     if (nearest < 0) {
         return DIG_ENOMATCH;
     }
@@ -192,15 +173,13 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const set,
     return DIG_OK;
 }
 
-void dig_match_find_weighted(const struct dig_curve_set *const set,
-                             const struct dig_prefilter *const prefilter, const size_t digs,
+void dig_match_find_weighted(const struct dig_curve_set *const set, const size_t digs,
                              const struct dig_observation dig[], struct dig_match *const match)
 {
     assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
     struct dig_pool_sums sums;
     dig_pool_sum(digs, dig, &sums);
-    const struct dig_weighted best =
-        dig_weighted_find(set, prefilter, &sums, (size_t)match->nearest);
-    match->weighted          = best.entry;
-    match->weighted_distance = best.entry >= 0 ? best.distance : (double)NAN;
+    const struct dig_weighted best = dig_weighted_find(set, &sums, (size_t)match->nearest);
+    match->weighted                = best.entry;
+    match->weighted_distance       = best.entry >= 0 ? best.distance : (double)NAN;
 }

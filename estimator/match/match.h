@@ -35,9 +35,8 @@ static inline struct dig_distance dig_misfit_distance(const struct dig_misfit *c
                                   .noise_floor = sqrt(sum->floor2_Nm2 / sum->norm2_Nm2) };
 }
 
-struct dig_cell;      // estimator/approach/interpolate.h
-struct dig_pooled;    // estimator/match/pool.h
-struct dig_prefilter; // estimator/match/prefilter.h
+struct dig_cell;   // estimator/approach/interpolate.h
+struct dig_pooled; // estimator/match/pool.h
 
 /// Misfit over the points measured, summed over single digs: pooling changes distance and floor by
 /// chance only.
@@ -62,20 +61,17 @@ DIG_MUST_CHECK enum dig_status dig_match_interpolate(const struct dig_curve_set 
 ///   sqrt(sum (sd^2 (1 + 1/packings) + sigma^2)) / ||measured||
 ///
 /// An entry that lacks a trajectory that was dug is skipped. DIG_ENOMATCH: every entry lacks one.
-/// DIG_EINVAL: an observation fails dig_observations_check(). By a prefilter of the set the same
-/// result sooner (estimator/match/nearest.h); NULL is allowed. O(entries); 120 kB of stack.
-DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set,
-                                                 const struct dig_prefilter *prefilter, size_t digs,
+/// DIG_EINVAL: an observation fails dig_observations_check(). O(entries), but few curves are
+/// compared in full (estimator/match/nearest.h); 120 kB of stack.
+DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set, size_t digs,
                                                  const struct dig_observation dig[],
                                                  double outside_floors, struct dig_match *match);
 
 /// Finds the entry nearest by the noise-weighted distance (estimator/match/weighted.h), over every
 /// channel that all digs measured; sets weighted and weighted_distance of a valid match of these
-/// digs. By a prefilter of the set the same result sooner; NULL is allowed. O(entries); 200 kB of
-/// stack.
-void dig_match_find_weighted(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
-                             size_t digs, const struct dig_observation dig[],
-                             struct dig_match *match);
+/// digs. O(entries); 200 kB of stack.
+void dig_match_find_weighted(const struct dig_curve_set *set, size_t digs,
+                             const struct dig_observation dig[], struct dig_match *match);
 
 /// An axis is undetermined ("untold" in messages) where its 90 % interval is wider than this share
 /// of the table's axis (of density, of its logarithm): the digs do not say which half of it.
@@ -100,10 +96,7 @@ void dig_match_unresolved(const struct dig_match *match, char text[DIG_UNTOLD_SI
 /// the most probable gravel (DIG_POSTERIOR_OUTSIDE), and the gravel is then that of the moment
 /// alone. DIG_EINVAL: no valid match of these digs, or max_evaluations < 1; DIG_ENOMEM. *match is
 /// unchanged then. Allocates (in NLopt): never in the tick. Some ten milliseconds; 350 kB of stack.
-/// By a prefilter of the set sooner: gravels whose outlines are hopeless are left out of the
-/// posterior, and no end of an interval moves by a thousandth of its axis. NULL is allowed.
-DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set *set,
-                                              const struct dig_prefilter *prefilter, size_t digs,
+DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set *set, size_t digs,
                                               const struct dig_observation dig[],
                                               int max_evaluations, struct dig_match *match);
 

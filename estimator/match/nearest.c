@@ -1,5 +1,7 @@
 #include "estimator/match/nearest.h"
 
+#include "core/outline.h"
+
 #include <assert.h>
 #include <float.h>
 #include <math.h>
@@ -23,7 +25,7 @@ struct measured {
 };
 
 struct search {
-    const struct dig_prefilter *prefilter;
+    const struct dig_curve_set *set;
     const struct dig_pool_sums *sums;
     struct measured             group[DIG_TRAJECTORY_MAX];
     double                      scatter_Nm2, norm2_Nm2;
@@ -53,13 +55,13 @@ static struct measured measure(const struct dig_pooled *const group)
 // Never above the squared miss of the curve, but for rounding; NaN for a curve that is none.
 static double bound_Nm2(const struct search *const s, const size_t entry)
 {
-    const size_t trajectories = s->prefilter->set->trajectories;
+    const size_t trajectories = s->set->trajectories;
 
     double sum[4] = { 0.0 }; // four at a time: a chain of additions waits for each
     for (size_t g = 0; g < s->sums->groups; g++) {
         const struct measured *const m = &s->group[g];
         const float *const           moment_Nm =
-            dig_outline_mean(s->prefilter, DIG_CHANNEL_MY_Nm, entry * trajectories + m->trajectory);
+            dig_outline_mean(s->set, DIG_CHANNEL_MY_Nm, entry * trajectories + m->trajectory);
         for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b += 4) {
             for (size_t i = 0; i < 4; i++) {
                 const double miss = m->mean_Nm[b + i] - (double)moment_Nm[b + i];
@@ -74,7 +76,7 @@ static double bound_Nm2(const struct search *const s, const size_t entry)
 // limit, and for an entry that lacks a trajectory.
 static double miss_Nm2(const struct search *const s, const size_t entry)
 {
-    const struct dig_curve_set *const set = s->prefilter->set;
+    const struct dig_curve_set *const set = s->set;
 
     double all = 0.0;
     for (size_t g = 0; g < s->sums->groups; g++) {
@@ -122,7 +124,7 @@ static void begin(struct search *const s)
 {
     int    at    = -1;
     double least = INFINITY;
-    for (size_t e = 0; e < s->prefilter->set->entries; e += FIRST_LOOK) {
+    for (size_t e = 0; e < s->set->entries; e += FIRST_LOOK) {
         const double bound = bound_Nm2(s, e);
         if (bound < least) {
             least = bound;
@@ -134,12 +136,11 @@ static void begin(struct search *const s)
     }
 }
 
-int dig_nearest_find(const struct dig_prefilter *const prefilter,
-                     const struct dig_pool_sums *const sums)
+int dig_nearest_find(const struct dig_curve_set *const set, const struct dig_pool_sums *const sums)
 {
-    assert(prefilter != NULL && sums != NULL);
+    assert(set != NULL && set->outline != NULL && sums != NULL);
     struct search s = {
-        .prefilter = prefilter,
+        .set       = set,
         .sums      = sums,
         .nearest   = -1,
         .distance  = INFINITY,
@@ -152,7 +153,7 @@ int dig_nearest_find(const struct dig_prefilter *const prefilter,
         s.norm2_Nm2 += sums->group[g].norm2_Nm2;
     }
     begin(&s);
-    for (size_t e = 0; e < prefilter->set->entries; e++) {
+    for (size_t e = 0; e < set->entries; e++) {
         if (!(bound_Nm2(&s, e) > s.reach_Nm2)) {
             try_entry(&s, e);
         }

@@ -17,17 +17,15 @@ struct likelihood {
 };
 
 static void make_likelihood(const struct dig_curve_set *const set,
-                            const struct dig_prefilter *const prefilter,
                             const struct dig_pool_sums *const sums, struct likelihood *const l)
 {
     l->groups = sums->groups;
     for (size_t g = 0; g < sums->groups; g++) {
-        dig_gaussian_make(set, prefilter, &sums->group[g], &l->group[g]);
+        dig_gaussian_make(set, &sums->group[g], &l->group[g]);
     }
 }
 
 double dig_posterior_excess(const struct dig_curve_set *const set,
-                            const struct dig_prefilter *const prefilter,
                             const struct dig_pool_sums *const sums,
                             const struct dig_gravel *const    gravel)
 {
@@ -37,7 +35,7 @@ double dig_posterior_excess(const struct dig_curve_set *const set,
     for (size_t g = 0; g < sums->groups; g++) {
         struct dig_gaussian one;
         struct dig_cell     cell;
-        dig_gaussian_make(set, prefilter, &sums->group[g], &one);
+        dig_gaussian_make(set, &sums->group[g], &one);
         if (dig_cell_find(set, gravel, one.trajectory, &cell) != DIG_OK) {
             return INFINITY;
         }
@@ -191,7 +189,6 @@ static void draw_samples(const struct grid *const grid, const double weight[],
 }
 
 enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
-                                   const struct dig_prefilter *const prefilter,
                                    const struct dig_pool_sums *const sums,
                                    struct dig_match *const           match)
 {
@@ -203,7 +200,7 @@ enum dig_status dig_posterior_fill(const struct dig_curve_set *const set,
     struct likelihood l;
     double            weight[GRID_MAX];
     double            most = -INFINITY;
-    make_likelihood(set, prefilter, sums, &l);
+    make_likelihood(set, sums, &l);
     for (size_t i = 0; i < grid.all; i++) {
         weight[i] = log_likelihood_at(set, &grid, i, &l);
         most      = fmax(most, weight[i]);

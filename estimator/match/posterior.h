@@ -10,7 +10,6 @@
 #include "core/curve.h"
 #include "core/gravel_match.h"
 #include "estimator/match/pool.h"
-#include "estimator/match/prefilter.h"
 
 /// Excess of digs with forces over the most probable gravel beyond which the gravel is outside the
 /// table. Of 255 digs along simpleA, left out of their own gravel's entry, none exceeds it
@@ -24,16 +23,14 @@
 ///   excess = ((q / numbers)^(1/3) - (1 - r)) / sqrt(r),   r = 2 / (9 numbers)
 ///
 /// (Wilson & Hilferty 1931). Infinite where the table has no curve, 0 where nothing is compared.
-/// With a prefilter some 30 microseconds a trajectory; NULL is allowed.
-double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_prefilter *prefilter,
-                            const struct dig_pool_sums *sums, const struct dig_gravel *gravel);
+/// Some 30 microseconds a trajectory.
+double dig_posterior_excess(const struct dig_curve_set *set, const struct dig_pool_sums *sums,
+                            const struct dig_gravel *gravel);
 
 /// Fills mean, mode, low, high and the samples of *match. DIG_ENOMATCH when the table has no
 /// complete cell for the trajectories that were dug; then *match is unchanged. About 8000
-/// evaluations a trajectory, by a prefilter of the set four times as fast; NULL is allowed. 120 kB
-/// of stack.
+/// evaluations a trajectory. 120 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_posterior_fill(const struct dig_curve_set *set,
-                                                  const struct dig_prefilter *prefilter,
                                                   const struct dig_pool_sums *sums,
                                                   struct dig_match           *match);
 

@@ -1,5 +1,6 @@
 #include "estimator/match/weighted.h"
 
+#include "core/outline.h"
 #include "estimator/match/gaussian.h"
 
 #include <assert.h>
@@ -21,7 +22,6 @@ struct compared_group {
 
 struct search {
     const struct dig_curve_set *set;
-    const struct dig_prefilter *prefilter;
     size_t                      groups;
     struct compared_group       group[DIG_TRAJECTORY_MAX];
     size_t                      entry; // the nearest so far
@@ -82,19 +82,13 @@ static double square_of(const struct search *const s, const size_t entry, const 
     double sum = 0.0;
     for (size_t g = 0; g < s->groups && sum <= limit; g++) {
         const struct compared_group *const a = &s->group[g];
-        const size_t       slot = entry * s->set->trajectories + a->gaussian.trajectory;
-        struct dig_outline drawn[DIG_FORCE_CHANNELS];
-        const float       *outline[DIG_FORCE_CHANNELS];
+        const size_t slot = entry * s->set->trajectories + a->gaussian.trajectory;
+        const float *outline[DIG_FORCE_CHANNELS];
         if (s->set->packings[slot] <= 0) {
             return INFINITY;
         }
         for (size_t c = 0; c < a->gaussian.channels; c++) {
-            if (s->prefilter != NULL) {
-                outline[c] = dig_outline_mean(s->prefilter, c, slot);
-            } else {
-                dig_outline_draw(s->set->curve[slot].mean[c], &drawn[c]);
-                outline[c] = drawn[c].block;
-            }
+            outline[c] = dig_outline_mean(s->set, c, slot);
         }
         sum = square(a, outline, limit, sum);
     }
@@ -111,14 +105,13 @@ static void try_entry(struct search *const s, const size_t entry)
 }
 
 struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
-                                      const struct dig_prefilter *const prefilter,
                                       const struct dig_pool_sums *const sums, const size_t nearest)
 {
     assert(set != NULL && sums != NULL && nearest < set->entries);
-    struct search s       = { .set = set, .prefilter = prefilter, .groups = sums->groups };
+    struct search s       = { .set = set, .groups = sums->groups };
     double        numbers = 0.0;
     for (size_t g = 0; g < sums->groups; g++) {
-        dig_gaussian_make(set, prefilter, &sums->group[g], &s.group[g].gaussian);
+        dig_gaussian_make(set, &sums->group[g], &s.group[g].gaussian);
         if (s.group[g].gaussian.numbers == 0) {
             return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
         }

@@ -12,18 +12,15 @@
 
 #include "core/curve.h"
 #include "estimator/match/pool.h"
-#include "estimator/match/prefilter.h"
 
 struct dig_weighted {
     int    entry;    // -1: nothing can be compared
     double distance; // sqrt(q / numbers compared): 1 is expected of digs of the entry's gravel
 };
 
-/// Exact, the first of several that are equal. By a prefilter of the set the same result sooner;
-/// NULL is allowed. nearest: the entry of D, which must have all trajectories that were dug.
-/// O(entries): with a prefilter some 0.05 microseconds each.
+/// Exact, the first of several that are equal. nearest: the entry of D, which must have all
+/// trajectories that were dug. O(entries): some 0.05 microseconds each.
 struct dig_weighted dig_weighted_find(const struct dig_curve_set *set,
-                                      const struct dig_prefilter *prefilter,
                                       const struct dig_pool_sums *sums, size_t nearest);
 
 #endif // DIG_ESTIMATOR_MATCH_WEIGHTED_H

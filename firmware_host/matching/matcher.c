@@ -11,10 +11,6 @@ void dig_matcher_set_table(struct dig_matcher *const matcher, const struct dig_c
 {
     assert(matcher != NULL && set != NULL);
     dig_matcher_finish(matcher);
-    matcher->outline = calloc(dig_prefilter_outlines(set) + 1, sizeof *matcher->outline);
-    if (matcher->outline != NULL) {
-        dig_prefilter_make(set, matcher->outline, &matcher->prefilter);
-    }
     matcher->varies = dig_approach_varies_any(set);
     for (size_t t = 0; t < set->trajectories; t++) {
         if (dig_approach_varies(set, t)) {
@@ -68,7 +64,6 @@ static const struct dig_curve_set *as_dug(struct dig_matcher *const         matc
 // What digs are matched with: the table itself, or one made as they were dug.
 struct basis {
     const struct dig_curve_set   *set; // NULL: no memory
-    const struct dig_prefilter   *prefilter;
     const struct dig_observation *dig;
 };
 
@@ -76,11 +71,11 @@ static struct basis basis_of(struct dig_matcher *const         matcher,
                              const struct dig_curve_set *const set, const size_t digs,
                              const struct dig_observation dig[])
 {
-    assert(matcher != NULL && (matcher->outline == NULL || matcher->prefilter.set == set));
+    assert(matcher != NULL);
     if (matcher->varies) {
-        return (struct basis){ as_dug(matcher, set, digs, dig), NULL, matcher->dig };
+        return (struct basis){ as_dug(matcher, set, digs, dig), matcher->dig };
     }
-    return (struct basis){ set, matcher->outline != NULL ? &matcher->prefilter : NULL, dig };
+    return (struct basis){ set, dig };
 }
 
 enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
@@ -92,10 +87,9 @@ enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
     if (of.set == NULL) {
         return DIG_ENOMEM;
     }
-    const enum dig_status status =
-        dig_match_nearest(of.set, of.prefilter, digs, of.dig, outside_floors, match);
+    const enum dig_status status = dig_match_nearest(of.set, digs, of.dig, outside_floors, match);
     if (status == DIG_OK) {
-        dig_match_find_weighted(of.set, of.prefilter, digs, of.dig, match);
+        dig_match_find_weighted(of.set, digs, of.dig, match);
     }
     return status;
 }
@@ -106,9 +100,8 @@ enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,
                                    struct dig_match *const match)
 {
     const struct basis of = basis_of(matcher, set, digs, dig);
-    return of.set != NULL
-               ? dig_fit_refine(of.set, of.prefilter, digs, of.dig, max_evaluations, match)
-               : DIG_ENOMEM;
+    return of.set != NULL ? dig_fit_refine(of.set, digs, of.dig, max_evaluations, match)
+                          : DIG_ENOMEM;
 }
 
 void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_curve_set *const set,
@@ -128,8 +121,7 @@ void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_curv
 void dig_matcher_finish(struct dig_matcher *const matcher)
 {
     if (matcher != NULL) {
-        free(matcher->outline);
         free(matcher->memory);
-        *matcher = (struct dig_matcher){ .outline = NULL };
+        *matcher = (struct dig_matcher){ .memory = NULL };
     }
 }

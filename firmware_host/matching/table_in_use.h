@@ -20,7 +20,7 @@ struct dig_table_in_use {
     struct dig_curve_set *retiring;   // the one before, while a thread may read it; owned; or NULL
     int64_t               generation; // of set, counted from 1
     double                lambda;     // machine's tooth length / set's
-    struct dig_matcher    matcher;    // of set; zeroed: without a prefilter
+    struct dig_matcher    matcher;    // of set
     const atomic_llong   *tick_generation;      // in use by the tick
     const atomic_llong   *publisher_generation; // in use by the publisher
 };

@@ -9,6 +9,7 @@
 //   calibration TABLE.sqlite TRAJECTORY [RECORDING.csv…]     RECORDING: mu0.3_mur0.3_rho2500….csv
 
 #include "closed_loop/recordings/observe.h"
+#include "core/outline.h"
 #include "estimator/match/gaussian.h"
 #include "estimator/match/pool.h"
 #include "files/recording_csv.h"
@@ -39,7 +40,7 @@ static void weigh(const struct dig_curve_set *const set, const struct dig_observ
     static struct dig_pool_sums sums;
     static struct dig_gaussian  likelihood;
     dig_pool_sum(1, dig, &sums);
-    dig_gaussian_make(set, NULL, &sums.group[0], &likelihood);
+    dig_gaussian_make(set, &sums.group[0], &likelihood);
     double most = -INFINITY, sum = 0.0;
     for (int i = 0; i < GRID; i++) {
         const int         at[DIG_AXES] = { i / FINE_DENSITY / FINE, i / FINE_DENSITY % FINE,
@@ -180,11 +181,13 @@ static void leave_out(struct bench *const b, const size_t left)
                  (const double(*)[DIG_CURVE_POINTS])all.mean, &b->all.run[left],
                  (double)all.packings);
     b->all.set->packings[slot]--;
+    dig_outlines_draw(b->all.set);
     struct dig_observation dig = table_run_observed(&b->all.run[left]);
     judge_all(b, &dig, &b->all.set->gravel[b->all.run[left].entry]);
     b->all.set->packings[slot]++;
     *curve                                    = whole;
     b->all.set->covariance[b->all.trajectory] = known;
+    dig_outlines_draw(b->all.set);
 }
 
 static void judge_recording(struct bench *const b, const char *const path)

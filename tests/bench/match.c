@@ -1,5 +1,5 @@
-// The matcher on a large table: the nearest entry by a summary beside a look at all entries, and
-// the refinement, on this thread's CPU clock.
+// The matcher on a large table: the nearest entry beside a look at all entries, and the refinement,
+// on this thread's CPU clock.
 //
 //   match TABLE.sqlite POINTS DIGS
 //
@@ -8,16 +8,16 @@
 // holds, correlated along the path and between moment and forces, so that neighbours differ as they
 // do in a computed table. Digs are of gravels between the points, with the error of one dig; every
 // second one measured the forces too. Prints
-//   KIND ENTRIES DIGS MEDIAN_ms WORST_ms PLAIN_ms
-// for "nearest", "weighed_moment" and "weighed_forces" (the entry of the least noise-weighted
-// distance), "moment" and "forces" (refined), PLAIN without a summary, then
-//   off SHARE    by what share of an axis an interval's end is off without it, at most
-// Fails when an entry or its distance (of either kind) is not the same to the last bit.
+//   KIND ENTRIES DIGS MEDIAN_ms WORST_ms
+// for "nearest", "all" (the same by a look at all entries), "weighed_moment" and "weighed_forces"
+// (the entry of the least noise-weighted distance), "moment" and "forces" (refined).
+// Fails when the nearest entry or its distance is not that of a look at all, to the last bit.
 
 #include "estimator/match/match.h"
+#include "core/outline.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/prefilter.h"
+#include "estimator/match/pool.h"
 #include "tables/load.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ static const double outside_floors = 2.5;
 
 struct times {
     size_t digs;
-    double ms[DIGS_MAX], plain_ms[DIGS_MAX];
+    double ms[DIGS_MAX];
 };
 
 static double cpu_ms(void)
@@ -119,6 +119,7 @@ static struct dig_curve_set *grow(const struct dig_curve_set *const from, const 
     set->gravel                     = take(set->entries, sizeof *set->gravel);
     set->packings                   = take(set->entries, sizeof *set->packings);
     set->curve                      = take(set->entries, sizeof *set->curve);
+    set->outline                    = take(DIG_FORCE_CHANNELS * set->entries, sizeof *set->outline);
     set->cell                       = take(set->entries, sizeof *set->cell);
     make_axes(from, points, set);
 
@@ -141,6 +142,7 @@ static struct dig_curve_set *grow(const struct dig_curve_set *const from, const 
             }
         }
     }
+    dig_outlines_draw(set);
     return set;
 }
 
@@ -173,74 +175,54 @@ static struct dig_observation dig_somewhere(const struct dig_curve_set *const fr
     return o;
 }
 
-static void note(struct times *const times, const double ms, const double plain_ms)
+static void note(struct times *const times, const double ms)
 {
-    times->ms[times->digs]       = ms;
-    times->plain_ms[times->digs] = plain_ms;
+    times->ms[times->digs] = ms;
     times->digs++;
 }
 
-static double interval_off(const struct dig_curve_set *const set, const struct dig_match *const a,
-                           const struct dig_match *const b)
+static void look_at_all(const struct dig_curve_set *const   set,
+                        const struct dig_observation *const o, int *const nearest,
+                        double *const distance)
 {
-    double off = 0.0;
-    for (int i = 0; i < DIG_AXES; i++) {
-        const enum dig_axis axis = (enum dig_axis)i;
-        off                      = fmax(off, fabs(dig_axis_position(set, axis, a->low.value[i]) -
-                                                  dig_axis_position(set, axis, b->low.value[i])));
-        off                      = fmax(off, fabs(dig_axis_position(set, axis, a->high.value[i]) -
-                                                  dig_axis_position(set, axis, b->high.value[i])));
-    }
-    return off;
-}
-
-static void weigh_once(const struct dig_prefilter *const   summary,
-                       const struct dig_observation *const o, struct times *const weighed)
-{
-    struct dig_match match = { .valid = true }, plain = { .valid = true };
-    const double     from = cpu_ms();
-    dig_match_find_weighted(summary->set, summary, 1, o, &match);
-    const double found = cpu_ms();
-    dig_match_find_weighted(summary->set, NULL, 1, o, &plain);
-    note(weighed, found - from, cpu_ms() - found);
-    if (match.weighted != plain.weighted ||
-        memcmp(&match.weighted_distance, &plain.weighted_distance,
-               sizeof match.weighted_distance) != 0) {
-        die("another entry is nearer by the noise-weighted distance than the one found");
+    static struct dig_pool_sums sums;
+    dig_pool_sum(1, o, &sums);
+    *distance = INFINITY;
+    for (size_t e = 0; e < set->entries; e++) {
+        const struct dig_cell   cell   = dig_cell_of_entry(set, e);
+        const struct dig_misfit misfit = dig_cell_misfit(&cell, &sums.group[0]);
+        const double            there  = dig_misfit_distance(&misfit).distance;
+        *nearest                       = there < *distance ? (int)e : *nearest;
+        *distance                      = fmin(there, *distance);
     }
 }
 
-// One dig, with and without the summary. Returns by how much the intervals differ.
-static double match_once(const struct dig_prefilter *const   summary,
-                         const struct dig_observation *const o, struct times *const nearest,
-                         struct times *const refined)
+static void match_once(const struct dig_curve_set *const set, const struct dig_observation *const o,
+                       struct times *const nearest, struct times *const all,
+                       struct times *const weighed, struct times *const refined)
 {
-    struct dig_match match, plain;
+    struct dig_match match;
+    int              truly = -1;
+    double           distance;
     const double     from = cpu_ms();
-    if (dig_match_nearest(summary->set, summary, 1, o, outside_floors, &match) != DIG_OK) {
+    if (dig_match_nearest(set, 1, o, outside_floors, &match) != DIG_OK) {
         die("no match");
     }
     const double found = cpu_ms();
-    if (dig_match_nearest(summary->set, NULL, 1, o, outside_floors, &plain) != DIG_OK) {
-        die("no match");
+    look_at_all(set, o, &truly, &distance);
+    const double looked = cpu_ms();
+    if (match.nearest != truly || memcmp(&match.distance, &distance, sizeof distance) != 0) {
+        die("another entry is nearer than the one found by outlines");
     }
-    const double found_plainly = cpu_ms();
-    note(nearest, found - from, found_plainly - found);
-    if (match.nearest != plain.nearest ||
-        memcmp(&match.distance, &plain.distance, sizeof match.distance) != 0) {
-        die("another entry is nearer than the one found by the summary");
-    }
-
-    const double start = cpu_ms();
-    if (dig_fit_refine(summary->set, summary, 1, o, EVALUATIONS, &match) != DIG_OK) {
+    dig_match_find_weighted(set, 1, o, &match);
+    const double told = cpu_ms();
+    if (dig_fit_refine(set, 1, o, EVALUATIONS, &match) != DIG_OK) {
         die("not refined");
     }
-    const double done = cpu_ms();
-    if (dig_fit_refine(summary->set, NULL, 1, o, EVALUATIONS, &plain) != DIG_OK) {
-        die("not refined");
-    }
-    note(refined, done - start, cpu_ms() - done);
-    return interval_off(summary->set, &match, &plain);
+    note(nearest, found - from);
+    note(all, looked - found);
+    note(weighed, told - looked);
+    note(refined, cpu_ms() - told);
 }
 
 static int compare(const void *const a, const void *const b)
@@ -253,9 +235,8 @@ static int compare(const void *const a, const void *const b)
 static void print(const char *const kind, const size_t entries, struct times *const t)
 {
     qsort(t->ms, t->digs, sizeof t->ms[0], compare);
-    qsort(t->plain_ms, t->digs, sizeof t->plain_ms[0], compare);
-    (void)printf("%s %zu %zu %.2f %.2f %.2f\n", kind, entries, t->digs, t->ms[t->digs / 2],
-                 t->ms[t->digs - 1], t->plain_ms[t->digs / 2]);
+    (void)printf("%s %zu %zu %.2f %.2f\n", kind, entries, t->digs, t->ms[t->digs / 2],
+                 t->ms[t->digs - 1]);
 }
 
 int main(const int argc, char **const argv)
@@ -270,24 +251,19 @@ int main(const int argc, char **const argv)
     if (dig_table_load(argv[1], &from, &error) != DIG_OK) {
         die(error.text);
     }
-    const struct dig_curve_set *const set     = grow(from, (size_t)points);
-    struct dig_outline *const         outline = take(dig_prefilter_outlines(set), sizeof *outline);
-    struct dig_prefilter              summary;
-    dig_prefilter_make(set, outline, &summary);
+    const struct dig_curve_set *const set = grow(from, (size_t)points);
 
-    static struct times nearest, moment, forces, weighed[2];
-    double              off  = 0.0;
+    static struct times nearest, all, weighed[2], refined[2];
     uint64_t            seed = 7;
     for (int d = 0; d < digs; d++) {
         const struct dig_observation o = dig_somewhere(from, d % 2 == 1, &seed);
-        off = fmax(off, match_once(&summary, &o, &nearest, d % 2 == 1 ? &forces : &moment));
-        weigh_once(&summary, &o, &weighed[d % 2]);
+        match_once(set, &o, &nearest, &all, &weighed[d % 2], &refined[d % 2]);
     }
     print("nearest", set->entries, &nearest);
+    print("all", set->entries, &all);
     print("weighed_moment", set->entries, &weighed[0]);
     print("weighed_forces", set->entries, &weighed[1]);
-    print("moment", set->entries, &moment);
-    print("forces", set->entries, &forces);
-    (void)printf("off %.1e\n", off);
+    print("moment", set->entries, &refined[0]);
+    print("forces", set->entries, &refined[1]);
     return 0;
 }

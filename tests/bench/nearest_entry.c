@@ -8,6 +8,7 @@
 //
 //   nearest_entry TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY
 
+#include "core/outline.h"
 #include "estimator/match/gaussian.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
@@ -40,7 +41,7 @@ static size_t likeliest(const struct bench *const b, const struct dig_observatio
     static struct dig_pool_sums sums;
     static struct dig_gaussian  likelihood;
     dig_pool_sum(1, dig, &sums);
-    dig_gaussian_make(b->all.set, NULL, &sums.group[0], &likelihood);
+    dig_gaussian_make(b->all.set, &sums.group[0], &likelihood);
     size_t best = 0;
     double most = -INFINITY;
     for (size_t e = 0; e < b->all.set->entries; e++) {
@@ -58,10 +59,10 @@ static size_t likeliest(const struct bench *const b, const struct dig_observatio
 static size_t weighted(const struct bench *const b, const struct dig_observation *const dig)
 {
     struct dig_match match;
-    if (dig_match_nearest(b->all.set, NULL, 1, dig, 2.5, &match) != DIG_OK) {
+    if (dig_match_nearest(b->all.set, 1, dig, 2.5, &match) != DIG_OK) {
         return 0;
     }
-    dig_match_find_weighted(b->all.set, NULL, 1, dig, &match);
+    dig_match_find_weighted(b->all.set, 1, dig, &match);
     return (size_t)match.weighted;
 }
 
@@ -84,7 +85,7 @@ static void judge(struct bench *const b, const struct table_run *const run)
 {
     struct dig_observation dig = table_run_observed(run);
     struct dig_match       match;
-    if (dig_match_nearest(b->all.set, NULL, 1, &dig, 2.5, &match) != DIG_OK) {
+    if (dig_match_nearest(b->all.set, 1, &dig, 2.5, &match) != DIG_OK) {
         return;
     }
     size_t found[WAYS] = { (size_t)match.nearest, likeliest(b, &dig), 0, weighted(b, &dig) };
@@ -97,8 +98,8 @@ static void judge(struct bench *const b, const struct table_run *const run)
         b->off[w] += off_by(b, &b->all.set->curve[slot_of(b, found[w], b->other)], run->entry);
     }
     static struct dig_curve predicted;
-    const bool told = dig_match_nearest(b->all.set, NULL, 1, &dig, 2.5, &match) == DIG_OK &&
-                      dig_fit_refine(b->all.set, NULL, 1, &dig, 300, &match) == DIG_OK &&
+    const bool              told = dig_match_nearest(b->all.set, 1, &dig, 2.5, &match) == DIG_OK &&
+                      dig_fit_refine(b->all.set, 1, &dig, 300, &match) == DIG_OK &&
                       dig_predict_curve(b->all.set, &match, b->other, &predicted) == DIG_OK;
     b->predicted_off += told ? off_by(b, &predicted, run->entry) : (double)NAN;
 }
@@ -113,6 +114,7 @@ static void leave_out(struct bench *const b, const size_t left)
         return;
     }
     b->all.set->packings[slot]--;
+    dig_outlines_draw(b->all.set);
     judge(b, &b->all.run[left]);
     b->all.set->packings[slot]++;
     *curve = whole;

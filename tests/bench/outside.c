@@ -11,6 +11,7 @@
 //
 //   outside TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY [SHARE_OF_THE_PATH]
 
+#include "core/outline.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
 #include "estimator/match/posterior.h"
@@ -75,15 +76,15 @@ static void judge(const struct bench *const b, const struct dig_curve_set *const
     static struct dig_pool_sums  sums;
     const struct dig_observation o = observed(b, run);
     struct dig_match             told;
-    if (dig_match_nearest(set, NULL, 1, &o, floors, &told) != DIG_OK ||
-        dig_fit_refine(set, NULL, 1, &o, EVALUATIONS, &told) != DIG_OK) {
+    if (dig_match_nearest(set, 1, &o, floors, &told) != DIG_OK ||
+        dig_fit_refine(set, 1, &o, EVALUATIONS, &told) != DIG_OK) {
         return;
     }
     struct dig_match       bare;
     struct dig_observation alone = o;
     alone.forces                 = false;
-    if (dig_match_nearest(set, NULL, 1, &alone, floors, &bare) != DIG_OK ||
-        dig_fit_refine(set, NULL, 1, &alone, EVALUATIONS, &bare) != DIG_OK) {
+    if (dig_match_nearest(set, 1, &alone, floors, &bare) != DIG_OK ||
+        dig_fit_refine(set, 1, &alone, EVALUATIONS, &bare) != DIG_OK) {
         return;
     }
     tally->by_moment += bare.outside ? 1 : 0;
@@ -94,7 +95,7 @@ static void judge(const struct bench *const b, const struct dig_curve_set *const
     tally->outside++;
     struct dig_match pulled = told;
     dig_pool_sum(1, &o, &sums);
-    if (dig_posterior_fill(set, NULL, &sums, &pulled) != DIG_OK) {
+    if (dig_posterior_fill(set, &sums, &pulled) != DIG_OK) {
         return;
     }
     const double by_told   = error_of(b, set, &told, run->entry);
@@ -144,6 +145,7 @@ static void look_inside(struct bench *const b)
         const struct dig_curve whole = *curve;
         (void)table_runs_without(&b->all, left, curve);
         b->all.set->packings[slot] = all - 1;
+        dig_outlines_draw(b->all.set);
         judge(b, b->all.set, &b->all.run[left], &tally);
         b->all.set->packings[slot] = all;
         *curve                     = whole;
@@ -169,6 +171,7 @@ static struct dig_curve_set without(const struct bench *const b, const int axis,
     }
     less.packings = packings;
     less.cell     = cell;
+    dig_outlines_draw(&less);
     less.axis_count[axis]--;
     less.axis[axis] = set->axis[axis] + (end == 0 ? 1 : 0);
 

@@ -86,8 +86,8 @@ static void judge(const struct dig_curve_set *const set, const char *const simpl
 
     struct dig_match match;
     struct dig_curve curve, wide;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &dig, 3.0, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, NULL, 1, &dig, 400, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &dig, 3.0, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, 1, &dig, 400, &match), DIG_OK);
     assert_int_equal(dig_predict_curve(set, &match, (size_t)actual.trajectory, &curve), DIG_OK);
     for (int w = 0; w < WIDTHS; w++) {
         scale(&curve, by[w], &wide);

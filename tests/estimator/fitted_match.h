@@ -10,8 +10,8 @@ static inline struct dig_match fit(const struct dig_curve_set *const set, const 
                                    const struct dig_observation dig[])
 {
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, NULL, digs, dig, 100, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, digs, dig, 100, &match), DIG_OK);
     return match;
 }
 

@@ -248,8 +248,8 @@ TEST(a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth)
     const struct dig_curve_set *const made =
         dig_approached_make(&table.cube.set, 2, slot, NULL, memory);
     struct dig_match plain, deep;
-    assert_int_equal(dig_match_nearest(&table.cube.set, NULL, 1, &seen, 3.0, &plain), DIG_OK);
-    assert_int_equal(dig_match_nearest(made, NULL, 1, &seen, 3.0, &deep), DIG_OK);
+    assert_int_equal(dig_match_nearest(&table.cube.set, 1, &seen, 3.0, &plain), DIG_OK);
+    assert_int_equal(dig_match_nearest(made, 1, &seen, 3.0, &deep), DIG_OK);
     assert_int_equal(deep.nearest, 2);
     assert_true(deep.distance < 0.01);
     assert_true(plain.nearest != 2 || plain.distance > 0.1); // too deep looks like too strong

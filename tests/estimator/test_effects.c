@@ -2,6 +2,7 @@
 
 #include "estimator/effects/effect.h"
 
+#include "core/outline.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
@@ -253,14 +254,16 @@ TEST(a_model_changes_the_tables_curves)
     assert_int_equal(w->out->packings[MADE_ACTUAL], 0);
     // What the template errs by is in the spread, and told apart from it.
     const struct dig_curve *const with = &w->out->curve[MADE_SIMPLE_A];
-    double                        more = 0.0, square = 0.0;
+    double                        more = 0.0, square = 0.0, block = 0.0;
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+        block += k < DIG_OUTLINE_POINTS ? (double)with->mean[0][k] / DIG_OUTLINE_POINTS : 0.0;
         more += pow((double)with->sd[0][k], 2.0) -
                 pow((double)w->plain->curve[MADE_SIMPLE_A].sd[0][k], 2.0);
         square += pow((double)with->mean[0][k], 2.0);
     }
     assert_true(more > 0.004 * square);
     assert_close((double)with->error[0], sqrt(more / square), 1e-3 * sqrt(more / square));
+    assert_close((double)dig_outline_mean(w->out, 0, MADE_SIMPLE_A)[0], block, 1e-6 * block);
     assert_int_equal(dig_effects_apply(w->plain, NULL, &model, w->out), DIG_ENOMATCH);
     model.effects   = 1;
     model.effect[0] = model.effect[1];

@@ -21,8 +21,8 @@ TEST(a_simple_dig_predicts_the_actual_one)
     assert_int_equal(b->predictions, 0); // nothing is known yet
 
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(b->set, NULL, 1, &b->observation, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(b->set, NULL, 1, &b->observation, 500, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(b->set, 1, &b->observation, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(b->set, 1, &b->observation, 500, &match), DIG_OK);
     assert_false(match.outside);
     struct dig_forecast *const forecast = calloc(1, sizeof *forecast);
     const unsigned long        before   = allocations;

@@ -15,8 +15,8 @@ static struct dig_match fit(const struct dig_curve_set *const   set,
                             const struct dig_observation *const o, const int evaluations)
 {
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, o, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, NULL, 1, o, evaluations, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, 1, o, evaluations, &match), DIG_OK);
     return match;
 }
 
@@ -124,8 +124,8 @@ TEST(what_cannot_be_told_apart_has_a_wide_interval)
     for (size_t d = 0; d < 8; d++) {
         digs[d] = a;
     }
-    assert_int_equal(dig_match_nearest(told, NULL, 8, digs, 2.5, &point), DIG_OK);
-    assert_int_equal(dig_fit_refine(told, NULL, 8, digs, 300, &point), DIG_OK);
+    assert_int_equal(dig_match_nearest(told, 8, digs, 2.5, &point), DIG_OK);
+    assert_int_equal(dig_fit_refine(told, 8, digs, 300, &point), DIG_OK);
     print_message(
         "axis 0, 1: %.2f %.2f of one dig, %.2f %.2f of eight, %.2f %.2f of alike\n",
         sure.high.value[0] - sure.low.value[0], sure.high.value[1] - sure.low.value[1],
@@ -225,9 +225,9 @@ TEST(between_the_grid_points_a_dig_is_judged_again)
     const struct dig_gravel      planted = { { 0.6, 0.55, 2500 } };
     const struct dig_observation o       = made_observation(&planted, MADE_SIMPLE_A, 0.0);
     struct dig_match             match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     assert_true(match.outside);
-    assert_int_equal(dig_fit_refine(set, NULL, 1, &o, 2000, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, 1, &o, 2000, &match), DIG_OK);
     assert_false(match.outside);
     made_table_destroy(set);
 }
@@ -252,18 +252,18 @@ TEST(refusals_leave_the_match_alone)
     struct dig_curve_set *const set = made_table(&plain);
     struct dig_observation      o   = made_observation(&set->gravel[9], MADE_SIMPLE_A, 0.0);
     struct dig_match            match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     struct dig_match before;
     memcpy(&before, &match, sizeof before);
-    assert_int_equal(dig_fit_refine(set, NULL, 1, &o, 0, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(set, 1, &o, 0, &match), DIG_EINVAL);
     o.moment_Nm[4] = NAN;
-    assert_int_equal(dig_fit_refine(set, NULL, 1, &o, 100, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(set, 1, &o, 100, &match), DIG_EINVAL);
     o.moment_Nm[4] = 0.0;
     assert_memory_equal(&match, &before, sizeof match);
     match.valid = false;
-    assert_int_equal(dig_fit_refine(set, NULL, 1, &o, 100, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(set, 1, &o, 100, &match), DIG_EINVAL);
     match.valid   = true;
     match.nearest = (int)set->entries;
-    assert_int_equal(dig_fit_refine(set, NULL, 1, &o, 100, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(set, 1, &o, 100, &match), DIG_EINVAL);
     made_table_destroy(set);
 }

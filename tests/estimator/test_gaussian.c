@@ -4,6 +4,7 @@
 
 #include "estimator/match/gaussian.h"
 
+#include "core/outline.h"
 #include "estimator/match/match.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
@@ -107,7 +108,7 @@ TEST(misses_are_as_large_as_digs_make_them)
             struct dig_gaussian            g;
             struct dig_cell                cell;
             dig_pool_sum(1, &dig, &sums);
-            dig_gaussian_make(set, NULL, &sums.group[0], &g);
+            dig_gaussian_make(set, &sums.group[0], &g);
             assert_int_equal(g.numbers, forces ? N : BLOCKS);
             assert_int_equal(dig_cell_find(set, gravel, MADE_SIMPLE_A, &cell), DIG_OK);
             sum += dig_gaussian_mahalanobis(&g, &cell).square / (double)g.numbers / TRIALS;
@@ -134,8 +135,8 @@ TEST(the_interval_holds_the_gravel)
                                                   1500 * pow(4000.0 / 1500.0, model_uniform(&seed)) } };
         const struct dig_observation dig    = dig_there(&gravel, true, true, &seed);
         struct dig_match             match;
-        assert_int_equal(dig_match_nearest(set, NULL, 1, &dig, 3.0, &match), DIG_OK);
-        assert_int_equal(dig_fit_refine(set, NULL, 1, &dig, 100, &match), DIG_OK);
+        assert_int_equal(dig_match_nearest(set, 1, &dig, 3.0, &match), DIG_OK);
+        assert_int_equal(dig_fit_refine(set, 1, &dig, 100, &match), DIG_OK);
         for (int a = 0; a < DIG_AXES; a++) {
             in[a] +=
                 gravel.value[a] >= match.low.value[a] && gravel.value[a] <= match.high.value[a];
@@ -152,7 +153,7 @@ static double log_of(const struct dig_curve_set *const set, const struct dig_poo
 {
     struct dig_gaussian g;
     struct dig_cell     cell;
-    dig_gaussian_make(set, NULL, &sums->group[0], &g);
+    dig_gaussian_make(set, &sums->group[0], &g);
     assert_int_equal(dig_cell_find(set, &set->gravel[9], MADE_SIMPLE_A, &cell), DIG_OK);
     const struct dig_mahalanobis misses = dig_gaussian_mahalanobis(&g, &cell);
     assert_close(dig_gaussian_log(&g, &cell), -0.35 * (misses.square + misses.log_det), 1e-9);
@@ -192,12 +193,14 @@ TEST(an_error_of_the_curve_is_as_fewer_packings)
         c->of[i][i] = 0.0036;
     }
     dig_pool_sum(1, &dig, &sums);
-    const size_t slot         = 9 * MADE_TRAJECTORIES + MADE_SIMPLE_A;
-    const double without      = log_of(set, &sums);
-    set->packings[slot]       = FEWER;
+    const size_t slot    = 9 * MADE_TRAJECTORIES + MADE_SIMPLE_A;
+    const double without = log_of(set, &sums);
+    set->packings[slot]  = FEWER;
+    dig_outlines_draw(set);
     const double fewer        = log_of(set, &sums);
     set->packings[slot]       = PACKINGS;
     set->curve[slot].error[0] = (float)sqrt(0.0036 * (1.0 / FEWER - 1.0 / PACKINGS));
+    dig_outlines_draw(set);
     assert_close(log_of(set, &sums), fewer, 1e-6 * fabs(fewer));
     assert_true(fabs(fewer - without) > 1e-3);
     forget(set);
@@ -221,7 +224,7 @@ TEST(what_was_not_measured_is_not_compared)
         dig.first = cases[i].first;
         dig.last  = cases[i].last;
         dig_pool_sum(1, &dig, &sums);
-        dig_gaussian_make(set, NULL, &sums.group[0], &g);
+        dig_gaussian_make(set, &sums.group[0], &g);
         assert_int_equal(g.numbers, cases[i].numbers);
         if (cases[i].numbers == 0) {
             continue;
@@ -235,7 +238,7 @@ TEST(what_was_not_measured_is_not_compared)
             }
         }
         dig_pool_sum(1, &dig, &sums);
-        dig_gaussian_make(set, NULL, &sums.group[0], &g);
+        dig_gaussian_make(set, &sums.group[0], &g);
         assert_close(dig_gaussian_mahalanobis(&g, &cell).square, before.square, 0.0);
         assert_close(dig_gaussian_mahalanobis(&g, &cell).log_det, before.log_det, 0.0);
     }

@@ -50,7 +50,7 @@ TEST(nearest_is_what_brute_force_finds)
             best = distance_to(set, e, &o) < distance_to(set, best, &o) ? e : best;
         }
         struct dig_match match;
-        assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+        assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
         assert_true(match.valid);
         assert_int_equal(match.nearest, (int)best);
         assert_close(match.nearest_distance, distance_to(set, best, &o), 1e-12);
@@ -64,16 +64,16 @@ TEST(an_entry_without_the_trajectory_is_passed_over)
     struct dig_curve_set *const  set = made_table(&plain);
     const struct dig_observation o   = made_observation(&set->gravel[5], MADE_ACTUAL, 0.0);
     struct dig_match             match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     assert_int_equal(match.nearest, 5);
     set->packings[5 * MADE_TRAJECTORIES + MADE_ACTUAL] = 0;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     assert_int_not_equal(match.nearest, 5);
 
     for (size_t e = 0; e < set->entries; e++) {
         set->packings[e * MADE_TRAJECTORIES + MADE_ACTUAL] = 0;
     }
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_ENOMATCH);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_ENOMATCH);
     made_table_destroy(set);
 }
 
@@ -86,7 +86,7 @@ TEST(the_noise_floor_is_one_dig_about_a_mean_of_few)
         o.sigma_Nm[k] = 0.1 * o.moment_Nm[k];
     }
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     assert_close(match.noise_floor, sqrt(0.15 * 0.15 * 4.0 / 3.0 + 0.01), 1e-6);
     made_table_destroy(set);
 }
@@ -96,12 +96,12 @@ TEST(a_dig_far_from_every_gravel_is_outside)
     struct dig_curve_set *const set = made_table(&plain);
     struct dig_observation      o   = made_observation(&set->gravel[47], MADE_SIMPLE_A, 0.0);
     struct dig_match            match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     assert_false(match.outside);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         o.moment_Nm[k] *= 2.5; // heavier than the heaviest
     }
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &o, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &o, 2.5, &match), DIG_OK);
     assert_true(match.valid && match.outside);
     made_table_destroy(set);
 }
@@ -173,12 +173,12 @@ TEST(an_observation_that_is_none_is_refused_and_writes_nothing)
     bad[7].first = 0.9, bad[7].last = 0.8;
     struct dig_match match = { .nearest = 42 };
     for (int i = 0; i < 8; i++) {
-        assert_int_equal(dig_match_nearest(set, NULL, 1, &bad[i], 2.5, &match), DIG_EINVAL);
+        assert_int_equal(dig_match_nearest(set, 1, &bad[i], 2.5, &match), DIG_EINVAL);
     }
     memset(bad[0].moment_Nm, 0, sizeof bad[0].moment_Nm);
     bad[0].trajectory = 0;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &bad[0], 2.5, &match), DIG_EINVAL);
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &good, NAN, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, 1, &bad[0], 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, 1, &good, NAN, &match), DIG_EINVAL);
     assert_int_equal(match.nearest, 42);
     assert_false(match.valid);
     made_table_destroy(set);

@@ -2,6 +2,7 @@
 
 #include "estimator/match/nearest.h"
 
+#include "core/outline.h"
 #include "estimator/match/match.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
@@ -22,6 +23,7 @@ static struct dig_curve_set *empty_set(const size_t entries, const size_t trajec
     set->gravel                     = calloc(entries, sizeof *set->gravel);
     set->packings                   = calloc(entries * trajectories, sizeof *set->packings);
     set->curve                      = calloc(entries * trajectories, sizeof *set->curve);
+    set->outline = calloc(DIG_FORCE_CHANNELS * entries * trajectories, sizeof *set->outline);
     for (size_t i = 0; i < entries * trajectories; i++) {
         set->packings[i] = 3;
     }
@@ -80,23 +82,15 @@ static int look_everywhere(const struct dig_curve_set *const set, const size_t d
     return nearest;
 }
 
-// By the summary, checked to be to the last bit what a look at all entries tells.
-static int nearest_of(const struct dig_curve_set *const set, const size_t digs,
+// By outlines of the set's curves as they are now.
+static int nearest_of(struct dig_curve_set *const set, const size_t digs,
                       const struct dig_observation dig[])
 {
-    struct dig_outline *const outline = calloc(dig_prefilter_outlines(set), sizeof *outline);
-    struct dig_prefilter      summary;
-    struct dig_match          plain = { .nearest = -1 }, by = { .nearest = -1 };
-    dig_prefilter_make(set, outline, &summary);
-    const enum dig_status status = dig_match_nearest(summary.set, &summary, digs, dig, 2.5, &by);
-    assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &plain), status);
-    free(outline);
-    assert_int_equal(by.valid, status == DIG_OK);
-    assert_int_equal(by.nearest, plain.nearest);
-    assert_memory_equal(&by.distance, &plain.distance, sizeof by.distance);
-    assert_int_equal(by.outside, plain.outside);
-    assert_memory_equal(&by.gravel, &plain.gravel, sizeof by.gravel);
-    return by.nearest;
+    struct dig_match match = { .nearest = -1 };
+    dig_outlines_draw(set);
+    const enum dig_status status = dig_match_nearest(set, digs, dig, 2.5, &match);
+    assert_int_equal(status, match.nearest >= 0 ? DIG_OK : DIG_ENOMATCH);
+    return match.nearest;
 }
 
 TEST(it_finds_what_a_look_at_all_finds_in_smooth_families)
@@ -277,26 +271,7 @@ TEST(one_entry_is_found_and_none_is_refused)
     made_table_destroy(set);
 }
 
-TEST(what_is_refused_of_all_entries_is_refused_by_a_summary)
-{
-    struct dig_curve_set *const set  = empty_set(1, 1);
-    uint64_t                    seed = 17;
-    wander(moment_of(set, 0, 0), 0.1, &seed);
-    struct dig_observation dig = observe(moment_of(set, 0, 0), 0, 1.0, &seed);
-    struct dig_outline     outline[DIG_FORCE_CHANNELS];
-    struct dig_prefilter   summary;
-    struct dig_match       match = { .nearest = 42 };
-    dig_prefilter_make(set, outline, &summary);
-    assert_int_equal(dig_match_nearest(summary.set, &summary, 0, &dig, 2.5, &match), DIG_EINVAL);
-    assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, NAN, &match), DIG_EINVAL);
-    assert_int_equal(dig_fit_refine(summary.set, &summary, 1, &dig, 100, &match), DIG_EINVAL);
-    dig.trajectory = 1;
-    assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, 2.5, &match), DIG_EINVAL);
-    assert_int_equal(match.nearest, 42);
-    made_table_destroy(set);
-}
-
-// Curves whose outline is far away are exchanged, behind the summary's back, for what was measured:
+// Curves whose outline is far away are exchanged, behind the outlines' back, for what was measured:
 // whoever looks at one finds it. The nearest is among those that the search begins with.
 TEST(what_is_far_by_its_outline_is_not_looked_at)
 {
@@ -309,9 +284,7 @@ TEST(what_is_far_by_its_outline_is_not_looked_at)
             moment_of(set, e, 0)[k] += e == NEAREST ? 0.0F : 50.0F;
         }
     }
-    struct dig_outline   outline[DIG_FORCE_CHANNELS * ENTRIES];
-    struct dig_prefilter summary;
-    dig_prefilter_make(set, outline, &summary);
+    dig_outlines_draw(set);
     const struct dig_observation dig = observe(moment_of(set, NEAREST, 0), 0, 0.1, &seed);
     for (size_t e = 0; e < ENTRIES; e++) {
         for (int k = 0; k < POINTS && e != NEAREST; k++) {
@@ -319,7 +292,7 @@ TEST(what_is_far_by_its_outline_is_not_looked_at)
         }
     }
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(summary.set, &summary, 1, &dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 1, &dig, 2.5, &match), DIG_OK);
     assert_int_equal(match.nearest, NEAREST);
     made_table_destroy(set);
 }

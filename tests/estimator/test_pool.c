@@ -22,8 +22,8 @@ static struct dig_match fit(const struct dig_curve_set *const set, const size_t 
                             const struct dig_observation dig[], const int evaluations)
 {
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, digs, dig, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, NULL, digs, dig, evaluations, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_fit_refine(set, digs, dig, evaluations, &match), DIG_OK);
     assert_int_equal(match.digs, digs);
     return match;
 }
@@ -103,7 +103,7 @@ TEST(sums_are_what_brute_force_adds_up)
         }
     }
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, DIGS, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, DIGS, dig, 2.5, &match), DIG_OK);
     assert_int_equal(match.nearest, (int)best);
     assert_close(match.nearest_distance, least, 1e-12);
     assert_close(match.noise_floor, floor_at_best, 1e-12);
@@ -116,10 +116,10 @@ TEST(a_gravel_without_one_of_the_trajectories_is_passed_over)
     const struct dig_observation dig[2] = { made_observation(&set->gravel[5], MADE_SIMPLE_A, 0.0),
                                             made_observation(&set->gravel[5], MADE_SIMPLE_B, 0.0) };
     struct dig_match             match;
-    assert_int_equal(dig_match_nearest(set, NULL, 2, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 2, dig, 2.5, &match), DIG_OK);
     assert_int_equal(match.nearest, 5);
     set->packings[5 * MADE_TRAJECTORIES + MADE_SIMPLE_B] = 0;
-    assert_int_equal(dig_match_nearest(set, NULL, 2, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 2, dig, 2.5, &match), DIG_OK);
     assert_int_not_equal(match.nearest, 5);
     made_table_destroy(set);
 }
@@ -214,16 +214,16 @@ TEST(refusals_write_nothing)
         dig[d] = made_observation(&set->gravel[3], MADE_SIMPLE_A, 0.0);
     }
     struct dig_match match = { .nearest = 42 };
-    assert_int_equal(dig_match_nearest(set, NULL, 0, dig, 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, 0, dig, 2.5, &match), DIG_EINVAL);
     dig[2].moment_Nm[9] = NAN;
-    assert_int_equal(dig_match_nearest(set, NULL, 3, dig, 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, 3, dig, 2.5, &match), DIG_EINVAL);
     assert_int_equal(match.nearest, 42);
 
-    assert_int_equal(dig_match_nearest(set, NULL, 2, dig, 2.5, &match), DIG_OK);
+    assert_int_equal(dig_match_nearest(set, 2, dig, 2.5, &match), DIG_OK);
     struct dig_match before;
     memcpy(&before, &match, sizeof before);
-    assert_int_equal(dig_fit_refine(set, NULL, 0, dig, 10, &match), DIG_EINVAL);
-    assert_int_equal(dig_fit_refine(set, NULL, 3, dig, 10, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(set, 0, dig, 10, &match), DIG_EINVAL);
+    assert_int_equal(dig_fit_refine(set, 3, dig, 10, &match), DIG_EINVAL);
     assert_memory_equal(&match, &before, sizeof match);
     made_table_destroy(set);
 }

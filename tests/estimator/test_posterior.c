@@ -2,6 +2,7 @@
 
 #include "estimator/match/posterior.h"
 
+#include "core/outline.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/entry_scatter.h"
 #include "estimator/match/match.h"
@@ -42,6 +43,7 @@ static struct dig_curve_set *table_with_forces(void)
             }
         }
     }
+    dig_outlines_draw(set);
     return set;
 }
 
@@ -156,10 +158,10 @@ TEST(forces_count_only_where_every_dig_has_them)
     dig[0].forces        = true;
     dig[0].force_N[1][7] = NAN;
     struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &dig[0], 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, 1, &dig[0], 2.5, &match), DIG_EINVAL);
     dig[0].force_N[1][7]       = 0.0;
     dig[0].force_sigma_N[0][7] = -1.0;
-    assert_int_equal(dig_match_nearest(set, NULL, 1, &dig[0], 2.5, &match), DIG_EINVAL);
+    assert_int_equal(dig_match_nearest(set, 1, &dig[0], 2.5, &match), DIG_EINVAL);
     made_table_destroy(set);
 }
 
@@ -232,7 +234,7 @@ TEST(excess_has_one_scale_for_digs_of_any_length)
                 dig[d].last = last[c];
             }
             dig_pool_sum(digs[c], dig, &sums);
-            const double excess = dig_posterior_excess(set, NULL, &sums, &gravel);
+            const double excess = dig_posterior_excess(set, &sums, &gravel);
             sum += excess;
             sum2 += excess * excess;
         }
@@ -247,6 +249,6 @@ TEST(excess_has_one_scale_for_digs_of_any_length)
     struct dig_observation      dig  = made_observation(&some, MADE_ACTUAL, 0.0);
     static struct dig_pool_sums sums;
     dig_pool_sum(1, &dig, &sums);
-    assert_true(isinf(dig_posterior_excess(set, NULL, &sums, &none)));
+    assert_true(isinf(dig_posterior_excess(set, &sums, &none)));
     made_table_destroy(set);
 }

@@ -28,7 +28,7 @@ static void tell(const struct dig_curve_set *const table, const char *const path
         struct dig_match               match;
         dig.forces = true;
         dig_pool_sum(1, &dig, &sums);
-        assert_int_equal(dig_posterior_fill(table, NULL, &sums, &match), DIG_OK);
+        assert_int_equal(dig_posterior_fill(table, &sums, &match), DIG_OK);
         tally->digs++;
         for (int a = 0; a < DIG_AXES; a++) {
             const double v = truth->value[a];

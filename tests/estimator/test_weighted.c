@@ -3,6 +3,7 @@
 
 #include "estimator/match/weighted.h"
 
+#include "core/outline.h"
 #include "estimator/match/match.h"
 #include "tests/estimator/random_dig.h"
 #include "tests/estimator/weighted_by_hand.h"
@@ -11,21 +12,6 @@
 #include <stdlib.h>
 
 static const struct made_options options = { .relative_sd = 0.15, .packings = PACKINGS };
-
-// With a summary and without, the same to the last bit.
-static struct dig_weighted find(const struct dig_curve_set *const set,
-                                const struct dig_pool_sums *const sums, const size_t nearest)
-{
-    struct dig_outline *const outline = calloc(dig_prefilter_outlines(set), sizeof *outline);
-    struct dig_prefilter      summary;
-    dig_prefilter_make(set, outline, &summary);
-    const struct dig_weighted by    = dig_weighted_find(set, &summary, sums, nearest);
-    const struct dig_weighted plain = dig_weighted_find(set, NULL, sums, nearest);
-    free(outline);
-    assert_int_equal(by.entry, plain.entry);
-    assert_memory_equal(&by.distance, &plain.distance, sizeof by.distance);
-    return by;
-}
 
 // Of packings: of errors that are sums of a common one and of neighbours', at 200 degrees of
 // freedom.
@@ -58,6 +44,7 @@ TEST(it_is_the_formula_written_out)
     uint64_t                    seed                      = 17;
     int                         found                     = 0;
     set->packings[11 * MADE_TRAJECTORIES + MADE_SIMPLE_A] = 0; // a hole
+    dig_outlines_draw(set);
     for (int trial = 0; trial < 24; trial++) {
         if (trial == 12) {
             set->covariance = learnt(&seed);
@@ -75,12 +62,12 @@ TEST(it_is_the_formula_written_out)
         dig_pool_sum(digs, dig, &sums);
         const size_t              nearest  = 12 + (size_t)trial;
         const struct dig_weighted expected = by_hand(set, &sums, 0.15, nearest);
-        const struct dig_weighted is       = find(set, &sums, nearest);
+        const struct dig_weighted is       = dig_weighted_find(set, &sums, nearest);
         assert_int_equal(is.entry, expected.entry);
         assert_close(is.distance, expected.distance, 1e-6 * expected.distance);
 
         struct dig_match match = { .valid = true, .nearest = (int)nearest };
-        dig_match_find_weighted(set, NULL, digs, dig, &match);
+        dig_match_find_weighted(set, digs, dig, &match);
         assert_int_equal(match.weighted, is.entry);
         assert_close(match.weighted_distance, is.distance, 0.0);
         assert_int_equal(match.nearest, nearest);
@@ -109,17 +96,18 @@ TEST(what_the_forces_tell_counts)
         const size_t entry  = slot / MADE_TRAJECTORIES;
         set->packings[slot] = entry == one || entry == other ? PACKINGS : 0;
     }
+    dig_outlines_draw(set);
     for (int trial = 0; trial < 20; trial++) {
         struct dig_observation dig = make_dig(&set->gravel[one], MADE_SIMPLE_A, true, &seed);
         for (int k = 0; k < POINTS; k++) {
             dig.force_N[0][k] *= trial % 2 == 0 ? 1.6 : 1.0;
         }
         struct dig_match match = { .valid = true, .nearest = (int)one };
-        dig_match_find_weighted(set, NULL, 1, &dig, &match);
+        dig_match_find_weighted(set, 1, &dig, &match);
         assert_int_equal(match.weighted, trial % 2 == 0 ? other : one);
         dig.forces    = false;
         match.nearest = (int)other;
-        dig_match_find_weighted(set, NULL, 1, &dig, &match);
+        dig_match_find_weighted(set, 1, &dig, &match);
         assert_int_equal(match.weighted, one); // the first of two that are equal
     }
     made_table_destroy(set);
@@ -142,6 +130,7 @@ TEST(who_is_known_worst_is_not_the_nearest_to_all)
         set->packings[WORST * MADE_TRAJECTORIES + t] = 1;
         set->packings[OWN * MADE_TRAJECTORIES + t]   = 40;
     }
+    dig_outlines_draw(set);
     for (int forces = 0; forces < 2; forces++) {
         struct dig_observation dig   = made_observation(&set->gravel[OWN], MADE_SIMPLE_A, 0.0);
         struct dig_match       match = { .valid = true, .nearest = WORST };
@@ -151,7 +140,7 @@ TEST(who_is_known_worst_is_not_the_nearest_to_all)
             dig.force_N[0][k] = -8.0 * dig.moment_Nm[k];
             dig.force_N[1][k] = 5.0 * dig.moment_Nm[k];
         }
-        dig_match_find_weighted(set, NULL, 1, &dig, &match);
+        dig_match_find_weighted(set, 1, &dig, &match);
         assert_int_equal(match.weighted, OWN);
     }
     made_table_destroy(set);
@@ -165,7 +154,7 @@ TEST(where_nothing_can_be_compared_no_entry_is_told)
     struct dig_observation      dig   = make_dig(&set->gravel[3], MADE_SIMPLE_A, true, &seed);
     dig.first                         = 0.5;
     dig.last                          = 0.55; // less than a block, or parts of two
-    dig_match_find_weighted(set, NULL, 1, &dig, &match);
+    dig_match_find_weighted(set, 1, &dig, &match);
     assert_int_equal(match.weighted, -1);
     assert_true(isnan(match.weighted_distance));
 

@@ -55,6 +55,7 @@ static inline struct bench *bench_create(void)
             b->cube.curve[g * TRAJECTORIES].sd[DIG_CHANNEL_MY_Nm][p] = 0.01F;
         }
     }
+    dig_outlines_draw(set);
     b->config = wires_config();
     wires_init(&b->wires);
     wires_init_fit(&b->wires, &b->config, set, &b->fit);
@@ -69,6 +70,7 @@ static inline struct bench *bench_of_two_digs(void)
         b->cube.packings[g * TRAJECTORIES + 1] = 3;
         b->cube.curve[g * TRAJECTORIES + 1]    = b->cube.curve[g * TRAJECTORIES];
     }
+    dig_outlines_draw(&b->cube.set);
     return b;
 }
 

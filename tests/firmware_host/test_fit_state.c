@@ -157,6 +157,7 @@ static void give_forces(struct bench *const b)
             }
         }
     }
+    dig_outlines_draw(&b->cube.set);
 }
 
 // A dig in one of the gravels, with its forces.

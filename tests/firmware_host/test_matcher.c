@@ -18,28 +18,11 @@ static struct dig_match match_by(struct dig_matcher *const         matcher,
     return match;
 }
 
-TEST(with_and_without_a_summary_a_dig_is_of_the_same_gravel)
-{
-    struct dig_curve_set *const set     = made_table(&options);
-    struct dig_matcher          matcher = { .outline = NULL };
-    const struct dig_match      without = match_by(&matcher, set);
-    dig_matcher_set_table(&matcher, set);
-    assert_non_null(matcher.outline);
-    const struct dig_match with = match_by(&matcher, set);
-    assert_int_equal(with.nearest, without.nearest);
-    assert_memory_equal(&with.nearest_distance, &without.nearest_distance, sizeof(double));
-    for (int a = 0; a < DIG_AXES; a++) {
-        assert_close(with.gravel.value[a], without.gravel.value[a], 1e-3 * without.gravel.value[a]);
-    }
-    dig_matcher_finish(&matcher);
-    made_table_destroy(set);
-}
-
-// The first entry that fits is another once the table has changed, and the summary with it.
+// The first entry that fits is another once the table has changed.
 TEST(another_table_taken_up_is_the_one_that_is_matched)
 {
     struct dig_curve_set *const set     = made_table(&options);
-    struct dig_matcher          matcher = { .outline = NULL };
+    struct dig_matcher          matcher = { .memory = NULL };
     dig_matcher_set_table(&matcher, set);
     const int before = match_by(&matcher, set).nearest;
 
@@ -50,7 +33,6 @@ TEST(another_table_taken_up_is_the_one_that_is_matched)
     assert_int_not_equal(match_by(&matcher, other).nearest, before);
 
     dig_matcher_finish(&matcher);
-    assert_null(matcher.outline);
     assert_int_not_equal(match_by(&matcher, other).nearest, before);
     dig_matcher_finish(&matcher);
     dig_matcher_finish(NULL);

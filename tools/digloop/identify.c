@@ -101,16 +101,15 @@ static enum dig_status match_all(const char *const table, const struct dig_curve
                                  const struct pool *const pool, struct dig_match *const match,
                                  struct dig_error *const error)
 {
-    enum dig_status status =
-        dig_match_nearest(set, NULL, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
+    enum dig_status status = dig_match_nearest(set, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
     if (status == DIG_ENOMATCH) {
         return dig_error_set(error, status, "%s: holds no gravel with a curve along %s%s", table,
                              set->trajectory[pool->dig[pool->digs - 1].trajectory].name,
                              pool->digs > 1 ? " and all else that was dug" : "");
     }
     if (status == DIG_OK) {
-        dig_match_find_weighted(set, NULL, pool->digs, pool->dig, match);
-        status = dig_fit_refine(set, NULL, pool->digs, pool->dig, EVALUATIONS, match);
+        dig_match_find_weighted(set, pool->digs, pool->dig, match);
+        status = dig_fit_refine(set, pool->digs, pool->dig, EVALUATIONS, match);
     }
     return status == DIG_OK ? DIG_OK
                             : dig_error_set(error, status, "%s: %s", table, dig_status_str(status));
