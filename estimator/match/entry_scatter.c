@@ -5,6 +5,12 @@
 #include <assert.h>
 #include <math.h>
 
+const double dig_entry_scatter_between[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS] = {
+    { 1.0, DIG_ENTRY_SCATTER_MY_FX, DIG_ENTRY_SCATTER_MY_FZ },
+    { DIG_ENTRY_SCATTER_MY_FX, 1.0, DIG_ENTRY_SCATTER_FX_FZ },
+    { DIG_ENTRY_SCATTER_MY_FZ, DIG_ENTRY_SCATTER_FX_FZ, 1.0 },
+};
+
 static double uniform(uint64_t *const state) // splitmix64
 {
     *state += 0x9E3779B97F4A7C15U;

@@ -36,6 +36,9 @@
 #define DIG_ENTRY_SCATTER_MY_FZ 0.63
 #define DIG_ENTRY_SCATTER_FX_FZ (-0.49)
 
+/// The same as a matrix, 1 on its diagonal.
+extern const double dig_entry_scatter_between[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS];
+
 /// Of one trajectory; 20 kB.
 struct dig_entry_scatter {
     size_t knots;

@@ -89,11 +89,6 @@ static double between(const double point_m, const double width_m, const int lag)
 static void assume_correlation(const struct dig_curve_set *const set, const size_t trajectory,
                                struct matrix *const c, double variance[NUMBERS])
 {
-    const double across[CHANNELS][CHANNELS] = {
-        { 1.0, DIG_ENTRY_SCATTER_MY_FX, DIG_ENTRY_SCATTER_MY_FZ },
-        { DIG_ENTRY_SCATTER_MY_FX, 1.0, DIG_ENTRY_SCATTER_FX_FZ },
-        { DIG_ENTRY_SCATTER_MY_FZ, DIG_ENTRY_SCATTER_FX_FZ, 1.0 },
-    };
     const struct dig_trajectory *const t = &set->trajectory[trajectory];
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
     const double point_m = whole_m / (DIG_CURVE_POINTS - 1);
@@ -107,7 +102,7 @@ static void assume_correlation(const struct dig_curve_set *const set, const size
         for (size_t j = 0; j < NUMBERS; j++) {
             const size_t one   = i % BLOCKS;
             const size_t other = j % BLOCKS;
-            c->of[i][j]        = across[i / BLOCKS][j / BLOCKS] *
+            c->of[i][j]        = dig_entry_scatter_between[i / BLOCKS][j / BLOCKS] *
                           lag_of[one > other ? one - other : other - one] / lag_of[0];
         }
     }

@@ -28,15 +28,14 @@
 /// residuals falls to one half after 0.05 to 0.11 tooth lengths and to nothing after 0.2 to 0.25.
 #define DIG_LIKELIHOOD_CORRELATION 0.25
 
-/// The part that does not depend on the gravel; 16 kB.
+/// The part that does not depend on the gravel; 14 kB.
 struct dig_likelihood {
     size_t trajectory;
     size_t channels;                      // the moment alone, or the forces too
     double effective;                     // independent errors along the dig
     double relative2[DIG_FORCE_CHANNELS]; // pooled (sd / mean)^2
     double measured_count;
-    // Of each point: 1 and 1 / digs where it was measured, 0 where not; what was; its sigma^2.
-    double measured[DIG_CURVE_POINTS];
+    // Of each point: 1 / digs where it was measured, 0 where not; what was; its sigma^2.
     double inverse_digs[DIG_CURVE_POINTS];
     double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double sigma2[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
@@ -46,7 +45,7 @@ void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_poole
                          struct dig_likelihood *likelihood);
 
 /// Its logarithm at a cell of the trajectory (dig_cell_find), up to a constant. 4 microseconds,
-/// with forces 11.
+/// with forces 12.
 double dig_likelihood_log(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
 
 /// Logarithm of the mean likelihood of the digs over the gravels of the table, evenly on friction,
