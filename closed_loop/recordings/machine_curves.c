@@ -106,11 +106,11 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
         told += inside && valid ? 1 : 0;
         if (valid) {
             dig_window_add(window, &(struct dig_window_sample){
-                                       .time_s    = dig->time_s[i] / sqrt(dig->lambda),
-                                       .moment_Nm = value[channel] / scale,
-                                       .pose      = r->pose,
-                                       .sigma_Nm  = (float)(sigma / scale),
-                                       .slow_Nm   = (float)(slow / scale),
+                                       .time_s = dig->time_s[i] / sqrt(dig->lambda),
+                                       .value  = { value[channel] / scale },
+                                       .pose   = r->pose,
+                                       .sigma  = { (float)(sigma / scale) },
+                                       .slow   = { (float)(slow / scale) },
                                    });
         }
     }

@@ -161,14 +161,11 @@ struct half {
 static struct half half_of(const struct dig_pooled *const group, const size_t channel,
                            const size_t half)
 {
-    const double *const mean = channel == 0 ? group->mean_Nm : group->force_N[channel - 1];
-    const double *const sigma2 =
-        channel == 0 ? group->sigma2_Nm2 : group->force_sigma2_N2[channel - 1];
     struct half h = { .whole = true };
     for (size_t k = half * POINTS; k < (half + 1) * POINTS; k++) {
         h.whole = h.whole && group->count[k] > 0.0;
-        h.mean += mean[k] / POINTS;
-        h.sigma2 += sigma2[k] / POINTS;
+        h.mean += group->mean[channel][k] / POINTS;
+        h.sigma2 += group->sigma2[channel][k] / POINTS;
         h.inverse_digs += 1.0 / group->count[k] / POINTS;
     }
     return h;

@@ -32,7 +32,7 @@ static void make_curve(const struct dig_likelihood *const l, const struct dig_ce
 
     double mean2 = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        mean2 += l->inverse_digs[k] > 0.0 ? curve->mean[k] * curve->mean[k] : 0.0;
+        mean2 += l->group->count[k] > 0.0 ? curve->mean[k] * curve->mean[k] : 0.0;
     }
     const double relative2 = l->relative2[channel] + cell->error2[channel];
     const double floor2    = least_spread * least_spread * relative2 * mean2 / l->measured_count;
@@ -48,18 +48,18 @@ static void make_curve(const struct dig_likelihood *const l, const struct dig_ce
 static double misfit_at(const struct dig_likelihood *const l, const double inverse_packings,
                         const struct channel_curve curve[const DIG_FORCE_CHANNELS], const size_t k)
 {
-    double spread[DIG_FORCE_CHANNELS];
-    double lower[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS];
-    double d[DIG_FORCE_CHANNELS];
-    double miss[DIG_FORCE_CHANNELS];
-    double sum         = 0.0;
-    double determinant = 1.0;
+    double       spread[DIG_FORCE_CHANNELS];
+    double       lower[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS];
+    double       d[DIG_FORCE_CHANNELS];
+    double       miss[DIG_FORCE_CHANNELS];
+    const double inverse_digs = 1.0 / l->group->count[k];
+    double       sum          = 0.0;
+    double       determinant  = 1.0;
     for (size_t i = 0; i < l->channels; i++) {
-        const double spread2 =
-            curve[i].spread2[k] * (l->inverse_digs[k] + inverse_packings) + least_d;
-        spread[i] = sqrt(spread2);
-        d[i]      = spread2 + l->sigma2[i][k];
-        miss[i]   = l->mean[i][k] - curve[i].mean[k];
+        const double spread2 = curve[i].spread2[k] * (inverse_digs + inverse_packings) + least_d;
+        spread[i]            = sqrt(spread2);
+        d[i]                 = spread2 + l->group->sigma2[i][k] * inverse_digs;
+        miss[i]              = l->group->mean[i][k] - curve[i].mean[k];
         for (size_t j = 0; j < i; j++) {
             lower[i][j] = dig_entry_scatter_between[i][j] * spread[i] * spread[j];
             for (size_t m = 0; m < j; m++) {
@@ -84,7 +84,7 @@ double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig
         make_curve(l, cell, c, &curve[c]);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += l->inverse_digs[k] > 0.0 ? misfit_at(l, cell->inverse_packings, curve, k) : 0.0;
+        sum += l->group->count[k] > 0.0 ? misfit_at(l, cell->inverse_packings, curve, k) : 0.0;
     }
     return -0.5 * l->effective * sum / l->measured_count;
 }
@@ -93,25 +93,14 @@ void dig_likelihood_make(const struct dig_curve_set *const set,
                          const struct dig_pooled *const group, struct dig_likelihood *const l)
 {
     assert(set != NULL && group != NULL && l != NULL);
-    *l = (struct dig_likelihood){ .trajectory = group->trajectory,
-                                  .channels   = group->forces ? DIG_FORCE_CHANNELS : 1 };
+    *l = (struct dig_likelihood){ .group    = group,
+                                  .channels = group->forces ? DIG_FORCE_CHANNELS : 1 };
     for (size_t n = 0; n < DIG_COVARIANCE_NUMBERS; n++) {
         l->relative2[n / DIG_COVARIANCE_BLOCKS] +=
             set->relative2[group->trajectory][n] / DIG_COVARIANCE_BLOCKS;
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double n = group->count[k];
-        if (!(n > 0.0)) {
-            continue;
-        }
-        l->measured_count += 1.0;
-        l->inverse_digs[k] = 1.0 / n;
-        l->mean[0][k]      = group->mean_Nm[k];
-        l->sigma2[0][k]    = group->sigma2_Nm2[k] / n;
-        for (size_t c = 1; c < DIG_FORCE_CHANNELS; c++) {
-            l->mean[c][k]   = group->force_N[c - 1][k];
-            l->sigma2[c][k] = group->force_sigma2_N2[c - 1][k] / n;
-        }
+        l->measured_count += group->count[k] > 0.0 ? 1.0 : 0.0;
     }
     const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
     const double whole_m = dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
@@ -137,7 +126,7 @@ double dig_likelihood_evidence(const struct dig_curve_set *const set,
             const double count = a == DIG_AXIS_DENSITY_kgpm3 ? COARSE_DENSITY : COARSE;
             gravel.value[a] = dig_axis_value(set, (enum dig_axis)a, ((double)of[a] + 0.5) / count);
         }
-        log_of[i] = dig_cell_find(set, &gravel, l.trajectory, &cell) == DIG_OK
+        log_of[i] = dig_cell_find(set, &gravel, group->trajectory, &cell) == DIG_OK
                         ? dig_likelihood_log(&l, &cell)
                         : -(double)INFINITY;
         most      = fmax(most, log_of[i]);

@@ -28,19 +28,16 @@
 /// residuals falls to one half after 0.05 to 0.11 tooth lengths and to nothing after 0.2 to 0.25.
 #define DIG_LIKELIHOOD_CORRELATION 0.25
 
-/// The part that does not depend on the gravel; 14 kB.
+/// The part that does not depend on the gravel.
 struct dig_likelihood {
-    size_t trajectory;
-    size_t channels;                      // the moment alone, or the forces too
-    double effective;                     // independent errors along the dig
-    double relative2[DIG_FORCE_CHANNELS]; // pooled (sd / mean)^2
-    double measured_count;
-    // Of each point: 1 / digs where it was measured, 0 where not; what was; its sigma^2.
-    double inverse_digs[DIG_CURVE_POINTS];
-    double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double sigma2[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    const struct dig_pooled *group;
+    size_t                   channels;                      // the moment alone, or the forces too
+    double                   effective;                     // independent errors along the dig
+    double                   relative2[DIG_FORCE_CHANNELS]; // pooled (sd / mean)^2
+    double                   measured_count;                // points
 };
 
+/// The group must outlive it.
 void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_pooled *group,
                          struct dig_likelihood *likelihood);
 

@@ -93,9 +93,9 @@ struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
     double       floor2  = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double n    = group->count[k]; // 0 where nothing was measured
-        const double miss = group->mean_Nm[k] - mean_Nm[k];
+        const double miss = group->mean[DIG_CHANNEL_MY_Nm][k] - mean_Nm[k];
         miss2 += n * miss * miss;
-        floor2 += n * (sd_Nm[k] * sd_Nm[k] * widened + group->sigma2_Nm2[k]);
+        floor2 += n * (sd_Nm[k] * sd_Nm[k] * widened + group->sigma2[DIG_CHANNEL_MY_Nm][k]);
     }
     return (struct dig_misfit){ .miss2_Nm2  = group->scatter_Nm2 + miss2,
                                 .floor2_Nm2 = floor2,

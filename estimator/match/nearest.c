@@ -44,7 +44,7 @@ static struct measured measure(const struct dig_pooled *const group)
         double       sum   = 0.0;
         for (size_t k = first; k < first + DIG_OUTLINE_POINTS; k++) {
             least = fmin(least, group->count[k]);
-            sum += group->mean_Nm[k];
+            sum += group->mean[DIG_CHANNEL_MY_Nm][k];
         }
         m.weight[b]  = least * DIG_OUTLINE_POINTS;
         m.mean_Nm[b] = sum / DIG_OUTLINE_POINTS;
@@ -90,7 +90,7 @@ static double miss_Nm2(const struct search *const s, const size_t entry)
         for (size_t b = 0; b < DIG_OUTLINE_BLOCKS; b++) {
             const size_t first = b * DIG_OUTLINE_POINTS;
             for (size_t k = first; k < first + DIG_OUTLINE_POINTS; k++) {
-                const double miss = group->mean_Nm[k] - (double)mean_Nm[k];
+                const double miss = group->mean[DIG_CHANNEL_MY_Nm][k] - (double)mean_Nm[k];
                 sum += group->count[k] * miss * miss;
             }
             if (all + (group->scatter_Nm2 + sum) > s->limit_Nm2) {

@@ -31,26 +31,24 @@ static struct dig_pooled *group_of(struct dig_pool_sums *const sums, const size_
 // Mean and sum of squares about it, updated by one value (Welford 1962).
 static void add(struct dig_pooled *const group, const struct dig_observation *const dig)
 {
-    group->forces = group->forces && dig->forces;
+    group->forces         = group->forces && dig->forces;
+    const size_t channels = group->forces ? DIG_FORCE_CHANNELS : 1;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = (double)k / (DIG_CURVE_POINTS - 1);
         if (at < dig->first || at > dig->last) {
             continue;
         }
-        const double value  = dig->moment_Nm[k];
-        const double sigma2 = dig->sigma_Nm[k] * dig->sigma_Nm[k];
-        const double off    = value - group->mean_Nm[k];
+        const double moment_Nm = dig->moment_Nm[k];
+        const double off_Nm    = moment_Nm - group->mean[DIG_CHANNEL_MY_Nm][k];
         group->count[k] += 1.0;
-        group->mean_Nm[k] += off / group->count[k];
-        group->sigma2_Nm2[k] += (sigma2 - group->sigma2_Nm2[k]) / group->count[k];
-        group->scatter_Nm2 += off * (value - group->mean_Nm[k]);
-        group->norm2_Nm2 += value * value;
-        for (size_t c = 0; group->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
-            const double share  = 1.0 / group->count[k];
-            const double force2 = dig->force_sigma_N[c][k] * dig->force_sigma_N[c][k];
-            group->force_N[c][k] += share * (dig->force_N[c][k] - group->force_N[c][k]);
-            group->force_sigma2_N2[c][k] += share * (force2 - group->force_sigma2_N2[c][k]);
+        for (size_t c = 0; c < channels; c++) {
+            const double value = c == 0 ? moment_Nm : dig->force_N[c - 1][k];
+            const double sigma = c == 0 ? dig->sigma_Nm[k] : dig->force_sigma_N[c - 1][k];
+            group->mean[c][k] += (value - group->mean[c][k]) / group->count[k];
+            group->sigma2[c][k] += (sigma * sigma - group->sigma2[c][k]) / group->count[k];
         }
+        group->scatter_Nm2 += off_Nm * (moment_Nm - group->mean[DIG_CHANNEL_MY_Nm][k]);
+        group->norm2_Nm2 += moment_Nm * moment_Nm;
     }
 }
 

@@ -21,14 +21,11 @@ void dig_pool_add(struct dig_pool *pool, const struct dig_observation *dig);
 /// Sums of the digs along one trajectory, point by point.
 struct dig_pooled {
     size_t trajectory;
-    double count[DIG_CURVE_POINTS];      // digs that measured the point
-    double mean_Nm[DIG_CURVE_POINTS];    // of them; 0 where there is none
-    double sigma2_Nm2[DIG_CURVE_POINTS]; // mean square of their sigmas
-    // Means of the forces, Fx and Fz, and mean squares of their sigmas; only when every dig has
-    // them.
-    bool   forces;
-    double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
-    double force_sigma2_N2[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+    double count[DIG_CURVE_POINTS]; // digs that measured the point
+    bool   forces;                  // every dig has them; else only the moment is summed
+    // Of each channel the mean of them, 0 where there is none, and the mean square of their sigmas.
+    double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double sigma2[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double scatter_Nm2; // squares of moment less mean, over digs and points
     double norm2_Nm2;   // squares of the moments, over digs and points
 };

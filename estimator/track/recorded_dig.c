@@ -52,18 +52,16 @@ void dig_recorded_dig_add(struct dig_recorded_dig *const recording, const double
     const double                   lambda3 = lambda * lambda * lambda;
     const double                   lambda4 = lambda * lambda3;
     const struct dig_window_sample sample  = {
-         .time_s    = 1e-9 * (double)time_ns / sqrt(lambda),
-         .moment_Nm = (wrench->My_Nm - bias_Nm) / lambda4,
-         .pose      = *point,
-         .sigma_Nm  = (float)(wrench->sigma_My_Nm / lambda4),
-         .slow_Nm   = (float)(wrench->slow_sigma_My_Nm / lambda4),
-
-         .has_forces    = wrench->force_valid,
-         .force_N       = { (float)(wrench->Fx_N / lambda3), (float)(wrench->Fz_N / lambda3) },
-         .force_sigma_N = { (float)(wrench->sigma_Fx_N / lambda3),
-                            (float)(wrench->sigma_Fz_N / lambda3) },
-         .force_slow_N  = { (float)(wrench->slow_sigma_Fx_N / lambda3),
-                            (float)(wrench->slow_sigma_Fz_N / lambda3) },
+         .time_s     = 1e-9 * (double)time_ns / sqrt(lambda),
+         .pose       = *point,
+         .has_forces = wrench->force_valid,
+         .value      = { (wrench->My_Nm - bias_Nm) / lambda4, wrench->Fx_N / lambda3,
+                         wrench->Fz_N / lambda3 },
+         .sigma = { (float)(wrench->sigma_My_Nm / lambda4), (float)(wrench->sigma_Fx_N / lambda3),
+                    (float)(wrench->sigma_Fz_N / lambda3) },
+         .slow  = { (float)(wrench->slow_sigma_My_Nm / lambda4),
+                    (float)(wrench->slow_sigma_Fx_N / lambda3),
+                    (float)(wrench->slow_sigma_Fz_N / lambda3) },
     };
     dig_window_add(&recording->window, &sample);
 }

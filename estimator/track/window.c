@@ -231,28 +231,13 @@ static double smoothed_sigma(const double left, const double sigma, const double
     return sqrt(slow * slow + left * fmax(sigma * sigma - slow * slow, 0.0));
 }
 
-// One channel of a sample: the moment, then the forces.
-struct reading {
-    double value, sigma, slow;
-};
-
-static struct reading reading_of(const struct dig_window_sample *const sample, const size_t channel)
-{
-    return channel == DIG_CHANNEL_MY_Nm
-               ? (struct reading){ sample->moment_Nm, (double)sample->sigma_Nm,
-                                   (double)sample->slow_Nm }
-               : (struct reading){ (double)sample->force_N[channel - 1],
-                                   (double)sample->force_sigma_N[channel - 1],
-                                   (double)sample->force_slow_N[channel - 1] };
-}
-
 // Smooths a channel and evaluates it and its sigma at the grid.
 static void read_channel(struct dig_window *const window, const struct range range,
                          const double half_s, const struct spot spot[], const size_t channel,
                          double out[DIG_CURVE_POINTS], double sigma[DIG_CURVE_POINTS])
 {
     for (size_t i = range.first; i < range.end; i++) {
-        window->value[i] = reading_of(&window->sample[i], channel).value;
+        window->value[i] = window->sample[i].value[channel];
     }
     dig_curve_smooth(range.end - range.first, &window->table_s[range.first],
                      &window->value[range.first], half_s, &window->smooth[range.first]);
@@ -261,10 +246,11 @@ static void read_channel(struct dig_window *const window, const struct range ran
         out[k]         = 0.0;
         sigma[k]       = 0.0;
         if (spot[k].measured) {
-            const struct reading at = reading_of(&window->sample[i], channel);
+            const struct dig_window_sample *const at = &window->sample[i];
             out[k] =
                 window->smooth[i] + spot[k].share * (window->smooth[i + 1] - window->smooth[i]);
-            sigma[k] = smoothed_sigma(noise_left(window, range, i, half_s), at.sigma, at.slow);
+            sigma[k] = smoothed_sigma(noise_left(window, range, i, half_s),
+                                      (double)at->sigma[channel], (double)at->slow[channel]);
         }
     }
 }

@@ -19,13 +19,11 @@
 /// One sample in rig scale and rig time.
 struct dig_window_sample {
     double                time_s;
-    double                moment_Nm;
     struct dig_path_point pose;
-    float                 sigma_Nm, slow_Nm;
     bool                  has_forces;
-    float                 force_N[DIG_FORCE_CHANNELS - 1]; // Fx, Fz
-    float                 force_sigma_N[DIG_FORCE_CHANNELS - 1];
-    float                 force_slow_N[DIG_FORCE_CHANNELS - 1];
+    double                value[DIG_FORCE_CHANNELS];
+    float                 sigma[DIG_FORCE_CHANNELS]; // 1 sigma
+    float                 slow[DIG_FORCE_CHANNELS];  // its part that does not average down
 };
 
 /// Zeroed: closed and empty, stride 0 counts as 1.

@@ -31,9 +31,8 @@ static double log_by_hand(const struct dig_curve_set *const set, const size_t en
         if (!(group->count[k] > 0.0)) {
             continue;
         }
-        const double m[3]      = { group->mean_Nm[k], group->force_N[0][k], group->force_N[1][k] };
-        const double sigma2[3] = { group->sigma2_Nm2[k], group->force_sigma2_N2[0][k],
-                                   group->force_sigma2_N2[1][k] };
+        const double m[3]      = { group->mean[0][k], group->mean[1][k], group->mean[2][k] };
+        const double sigma2[3] = { group->sigma2[0][k], group->sigma2[1][k], group->sigma2[2][k] };
         double       miss[3], spread[3], d[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
         for (int i = 0; i < n; i++) {
             // Made with one relative spread everywhere: it is the pooled one, too.

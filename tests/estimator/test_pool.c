@@ -48,6 +48,33 @@ static void dig_there(const struct dig_gravel *const gravel, const enum made_tra
     }
 }
 
+TEST(each_channel_is_summed_where_it_was_measured)
+{
+    static struct dig_pool_sums sums;
+    static const double         value[2][3] = { { 1.0, 2.0, 3.0 }, { 5.0, 8.0, 13.0 } };
+    struct dig_observation      dig[2]      = { { .last = 1.0 }, { .first = 0.5, .last = 1.0 } };
+    for (int d = 0; d < 2; d++) {
+        dig[d].forces = true;
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            dig[d].moment_Nm[k] = dig[d].sigma_Nm[k] = value[d][0];
+            for (int c = 0; c < 2; c++) {
+                dig[d].force_N[c][k] = dig[d].force_sigma_N[c][k] = value[d][1 + c];
+            }
+        }
+    }
+    dig_pool_sum(2, dig, &sums);
+    assert_int_equal(sums.groups, 1);
+    for (int c = 0; c < 3; c++) {
+        const double a = value[0][c], b = value[1][c];
+        assert_close(sums.group[0].mean[c][0], a, 1e-12);
+        assert_close(sums.group[0].sigma2[c][0], a * a, 1e-12);
+        assert_close(sums.group[0].mean[c][255], 0.5 * (a + b), 1e-12);
+        assert_close(sums.group[0].sigma2[c][255], 0.5 * (a * a + b * b), 1e-12);
+    }
+    assert_close(sums.group[0].scatter_Nm2, 128.0 * 8.0, 1e-9);
+    assert_close(sums.group[0].norm2_Nm2, 256.0 + 128.0 * 25.0, 1e-9);
+}
+
 TEST(the_oldest_leaves_a_full_pool)
 {
     static struct dig_pool       pool;

@@ -140,17 +140,14 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
 {
     const struct dig_curve *const near =
         &set->curve[nearest * MADE_TRAJECTORIES + group->trajectory];
-    const struct dig_curve *const c = &set->curve[entry * MADE_TRAJECTORIES + group->trajectory];
-    const double *const measured[]  = { group->mean_Nm, group->force_N[0], group->force_N[1] };
-    const double *const noise2[]    = { group->sigma2_Nm2, group->force_sigma2_N2[0],
-                                        group->force_sigma2_N2[1] };
-    const int           from        = all->count;
-    int                 which[MOST];
+    const struct dig_curve *const c    = &set->curve[entry * MADE_TRAJECTORIES + group->trajectory];
+    const int                     from = all->count;
+    int                           which[MOST];
     double dig2[MOST], noise2_of[MOST], together[MOST], square[3] = { 0 }, squares[3] = { 0 };
     double scale[MOST];
     for (int w = 0; w < (group->forces ? 3 : 1) * BLOCKS; w++) {
         const int    i = w / BLOCKS, b = w % BLOCKS;
-        const double x    = mean_in(group, b, measured[i], NULL);
+        const double x    = mean_in(group, b, group->mean[i], NULL);
         double       size = 0.0, one[POINTS], noise[POINTS];
         if (isnan(x)) {
             continue;
@@ -172,7 +169,7 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
             for (int m = half; m < half + WIDE / 2; m++) {
                 mean += one[m] / (WIDE / 2);
             }
-            noise[k] = mean * noise2[i][k];
+            noise[k] = mean * group->sigma2[i][k];
         }
         const int    n    = all->count++;
         const double own2 = relative->of[w][w];
