@@ -16,13 +16,15 @@ static size_t write_parameters(const struct dig_machine_search *const s,
                                const enum dig_effect_id id, struct dig_model_parameter parameter[])
 {
     const struct dig_effect *const effect = dig_effect_of(id);
-    const size_t                   first  = dig_lines_first(&s->lines, id);
+    const size_t                   first  = dig_lines_first(&s->fit.lines, id);
+    const size_t                   n      = s->fit.lines.columns;
     for (size_t i = 0; i < effect->parameters; i++) {
         const struct dig_effect_parameter *const of = &effect->parameter[i];
         struct dig_model_parameter *const        p  = &parameter[i];
 
-        const double value = of->absent + of->scale * s->at[first + i];
-        const double wide  = ninety * of->scale * s->sigma[first + i];
+        const double value = of->absent + of->scale * s->fit.at[first + i];
+        const double wide =
+            ninety * of->scale * sqrt(fmax(s->fit.covariance[(n + 1) * (first + i)], 0.0));
         memcpy(p->name, of->name, strlen(of->name) + 1);
         p->value = fmin(fmax(value, of->low), of->high);
         p->low   = value - wide;
@@ -37,7 +39,7 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                          const struct dig_model_effect effect[], const bool wide,
                          struct dig_machine_answer *const answer)
 {
-    struct dig_fit_answer solved = { .at = s->at, .covariance = s->covariance };
+    struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
     size_t                column[DIG_MACHINE_NUMBERS];
     double                scale[DIG_MACHINE_NUMBERS];
     double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
@@ -59,12 +61,12 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                                            .log_evidence = solved.log_evidence };
     for (size_t e = 0; e < effects; e++) {
         const struct dig_effect *const of    = dig_effect_of(effect[e].effect);
-        const size_t                   first = dig_lines_first(&s->lines, of->id);
+        const size_t                   first = dig_lines_first(&s->fit.lines, of->id);
         answer->effect[e]                    = effect[e];
         for (size_t i = 0; i < of->parameters; i++) {
             const struct dig_effect_parameter *const parameter = &of->parameter[i];
 
-            const double value = parameter->absent + parameter->scale * s->at[first + i];
+            const double value = parameter->absent + parameter->scale * s->fit.at[first + i];
             answer->value[n]   = fmin(fmax(value, parameter->low), parameter->high);
             scale[n]           = parameter->scale;
             column[n++]        = first + i;
@@ -72,7 +74,7 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
     }
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j <= i; j++) {
-            lower[i * n + j] = s->covariance[column[i] * s->lines.columns + column[j]];
+            lower[i * n + j] = s->fit.covariance[column[i] * s->fit.lines.columns + column[j]];
         }
         lower[i * n + i] += least_variance; // of one that is not fitted
     }
@@ -125,7 +127,7 @@ void dig_machine_write_candidates(struct dig_machine_search *const s, const doub
 {
     finding->candidates = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        struct dig_fit_answer       answer = { .at = s->at, .sigma = s->sigma };
+        struct dig_fit_answer       answer = { .at = s->fit.at, .covariance = s->fit.covariance };
         struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
         dig_fit_solve(&s->fit, 1U << e, &answer);
         *out = (struct dig_candidate){
@@ -151,9 +153,9 @@ void dig_machine_write_candidates(struct dig_machine_search *const s, const doub
 void dig_machine_write_effects(struct dig_machine_search *const s, const double inclusion[],
                                struct dig_machine_finding *const finding)
 {
-    struct dig_fit_answer answer = { .at = s->at, .sigma = s->sigma };
+    struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
     dig_fit_solve(&s->fit, s->set, &answer);
-    memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+    memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
     finding->effects = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         if (((s->set >> e) & 1U) == 0) {
@@ -178,19 +180,19 @@ void dig_machine_write_own_payload(struct dig_machine_search *const s,
                                    double                           own_kg[DIG_MEASURED_MAX])
 {
     static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
-    struct dig_fit_answer alone   = { .at = s->at };
+    struct dig_fit_answer alone   = { .at = s->fit.at };
     if ((s->set & carries) != 0) {
-        memcpy(s->at, s->lines.at, s->lines.columns * sizeof(double));
+        memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
     } else {
         dig_fit_solve(&s->fit, carries, &alone);
     }
     for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
         own_kg[d] = 0.0;
     }
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->lines.column[c];
+    for (size_t c = 0; c < s->fit.lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->fit.lines.column[c];
         if (column->segment >= 0 && !s->air.segment[column->segment].after) {
-            own_kg[s->air.segment[column->segment].dig] = column->scale * s->at[c];
+            own_kg[s->air.segment[column->segment].dig] = column->scale * s->fit.at[c];
         }
     }
 }

@@ -7,10 +7,9 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 8, HALVINGS = 6 };
+enum { ROUNDS = 8 };
 
 static const double false_alarm = 0.01;
 
@@ -46,16 +45,12 @@ enum { ANGLES = 0, LEVEL = DIG_JOINTS, LINKS = DIG_JOINTS + 1 };
 enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = 6, SEALS = 12 };
 
 struct work {
-    struct dig_air  *air;
-    struct dig_lines lines;
-    struct dig_fit   fit;
-    double           base[DIG_LINES_COLUMNS_MAX];  // width of each column's tolerance, in scales
-    double           gross[DIG_LINES_COLUMNS_MAX]; // and of a cause
-    double           width[DIG_LINES_COLUMNS_MAX]; // of the fit at hand
-    double           at[DIG_LINES_COLUMNS_MAX];
-    double          *covariance; // [columns * columns]
-    bool             asked[DIG_CAUSES];
-    double           least; // log evidence that a cause must bring
+    struct dig_air *air;
+    struct dig_fit  fit;
+    double          base[DIG_LINES_COLUMNS_MAX];  // width of each column's tolerance, in scales
+    double          gross[DIG_LINES_COLUMNS_MAX]; // and of a cause
+    double          width[DIG_LINES_COLUMNS_MAX]; // of the fit at hand
+    unsigned        asked;                        // a bit each
 };
 
 static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
@@ -176,8 +171,8 @@ static double allowed(const struct work *const w, const struct dig_lines_column 
 
 static void set_widths(struct work *const w)
 {
-    for (size_t c = 0; c < w->lines.columns; c++) {
-        const struct dig_lines_column *const column = &w->lines.column[c];
+    for (size_t c = 0; c < w->fit.lines.columns; c++) {
+        const struct dig_lines_column *const column = &w->fit.lines.column[c];
 
         const int           cause = cause_of(column);
         const struct sigmas sigma =
@@ -188,7 +183,7 @@ static void set_widths(struct work *const w)
         const bool factor  = cause >= 0 && cause / DIG_JOINTS == (int)DIG_CAUSE_FACTOR;
         const bool returns = factor && is_return_side(w, (size_t)cause % DIG_JOINTS,
                                                       column->parameter % DIG_CHAMBERS);
-        if (cause >= 0 && (!w->asked[cause] || returns)) {
+        if (cause >= 0 && (((w->asked >> cause) & 1U) == 0 || returns)) {
             w->gross[c] = w->base[c];
         }
     }
@@ -197,116 +192,52 @@ static void set_widths(struct work *const w)
 static void solve(struct work *const w, const unsigned named, const bool whole,
                   struct dig_fit_answer *const answer)
 {
-    for (size_t c = 0; c < w->lines.columns; c++) {
-        const int  cause = cause_of(&w->lines.column[c]);
+    for (size_t c = 0; c < w->fit.lines.columns; c++) {
+        const int  cause = cause_of(&w->fit.lines.column[c]);
         const bool wide  = cause >= 0 && ((named >> cause) & 1U) != 0;
         w->width[c]      = wide ? w->gross[c] : w->base[c];
     }
-    *answer = (struct dig_fit_answer){ .at         = whole ? w->at : NULL,
-                                       .covariance = whole ? w->covariance : NULL };
+    *answer = (struct dig_fit_answer){ .at         = whole ? w->fit.at : NULL,
+                                       .covariance = whole ? w->fit.covariance : NULL };
     dig_fit_solve_each(&w->fit, w->width, answer);
 }
 
-static double evidence(struct work *const w, const unsigned named)
+// Of causes that are asked for.
+static double evidence(void *const context, const unsigned named)
 {
+    struct work *const    w = context;
     struct dig_fit_answer answer;
+    if ((named & ~w->asked) != 0) {
+        return -INFINITY;
+    }
     solve(w, named, false, &answer);
     return answer.log_evidence;
-}
-
-// Causes one at a time while each brings enough; then without those that are no longer needed.
-static unsigned choose(struct work *const w)
-{
-    unsigned named = 0;
-    double   now   = evidence(w, named);
-    for (size_t step = 0; step < DIG_CAUSES; step++) {
-        unsigned best = named;
-        double   most = now + w->least;
-        for (unsigned k = 0; k < DIG_CAUSES; k++) {
-            const unsigned more = named | 1U << k;
-            const double   then =
-                w->asked[k] && more != named ? evidence(w, more) : -(double)INFINITY;
-            if (then > most) {
-                most = then;
-                best = more;
-            }
-        }
-        if (best == named) {
-            break;
-        }
-        named = best;
-        now   = most;
-        for (unsigned k = 0; k < DIG_CAUSES; k++) {
-            const unsigned less = named & ~(1U << k);
-            const double   then = less != named ? evidence(w, less) : -(double)INFINITY;
-            if (then > now - w->least) {
-                named = less;
-                now   = then;
-            }
-        }
-    }
-    return named;
 }
 
 // Sums the equations where the lines stand; s2 by what everything together leaves.
 static void take_slopes(struct work *const w)
 {
-    const double          one = 1.0;
-    struct dig_fit_answer all;
-    dig_lines_update(&w->lines, DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE);
-    dig_fit_sum(&w->fit, &one);
-    w->fit.s2 = 1.0;
-    solve(w, (1U << DIG_CAUSES) - 1U, true, &all);
-    w->fit.s2 =
-        fmax(1.0, all.rest2 / fmax(w->fit.rows - (double)w->lines.columns, 0.25 * w->fit.rows));
-}
-
-static double penalty(const struct work *const w, const double at[])
-{
-    double sum = 0.0;
-    for (size_t c = 0; c < w->lines.columns; c++) {
-        sum += w->width[c] > 0.0 ? pow(at[c] / w->width[c], 2.0) : 0.0;
-    }
-    return w->fit.s2 * sum;
-}
-
-// Goes where the equations lead, or part of the way; how far, in widths.
-static double go(struct work *const w, const unsigned named)
-{
-    struct dig_fit_answer answer;
-    double                step[DIG_LINES_COLUMNS_MAX];
-    solve(w, named, true, &answer);
-    const double now = dig_lines_rest2(&w->lines, w->lines.at) + penalty(w, w->lines.at);
-    for (int halved = 0; halved < HALVINGS; halved++) {
-        double moved = 0.0;
-        for (size_t c = 0; c < w->lines.columns; c++) {
-            const double way = ldexp(w->at[c] - w->lines.at[c], -halved);
-            step[c]          = w->lines.at[c] + way;
-            moved            = w->width[c] > 0.0 ? fmax(moved, fabs(way) / w->width[c]) : moved;
-        }
-        if (dig_lines_rest2(&w->lines, step) + penalty(w, step) <= now) {
-            memcpy(w->lines.at, step, w->lines.columns * sizeof(double));
-            return moved;
-        }
-    }
-    return 0.0;
+    dig_lines_update(&w->fit.lines, DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE);
+    dig_fit_sum(&w->fit, NULL, w->gross);
 }
 
 // The causes named, with the lines where they lead.
 static unsigned find(struct work *const w)
 {
-    struct dig_fit_answer all;
-    unsigned              named = 0;
+    const struct dig_greedy causes = { DIG_CAUSES, log(DIG_CAUSES / false_alarm), evidence, w };
+    struct dig_fit_answer   answer;
+    unsigned                named = 0;
     take_slopes(w);
     // Rows of valves that hunt scatter more than their sensors.
-    solve(w, (1U << DIG_CAUSES) - 1U, true, &all);
-    (void)dig_machine_noise_widen(&w->lines, w->at);
+    solve(w, (1U << DIG_CAUSES) - 1U, true, &answer);
+    (void)dig_machine_noise_widen(&w->fit.lines, w->fit.at);
     for (int round = 0; round < ROUNDS; round++) {
         const unsigned before = named;
         take_slopes(w);
-        named = choose(w);
+        named = dig_greedy_select(&causes, 0);
+        solve(w, named, true, &answer);
         // Near its end this moves within a fortieth of what is allowed.
-        if (go(w, named) < 0.025 && named == before) {
+        if (dig_fit_step(&w->fit, w->width) < 0.025 && named == before) {
             break;
         }
     }
@@ -318,14 +249,14 @@ static unsigned find(struct work *const w)
 static double sureness(const struct work *const w, const size_t column)
 {
     return w->gross[column] > w->base[column]
-               ? 1.0 / fmax(w->covariance[column * w->lines.columns + column], 1e-12)
+               ? 1.0 / fmax(w->fit.covariance[column * w->fit.lines.columns + column], 1e-12)
                : 0.0;
 }
 
 // How much a column counts in the figure of its cause, with the covariance as last solved.
 static double share_of(const struct work *const w, const size_t cause, const size_t column)
 {
-    const struct dig_lines_column *const c     = &w->lines.column[column];
+    const struct dig_lines_column *const c     = &w->fit.lines.column[column];
     const size_t                         joint = cause % DIG_JOINTS;
     if (cause_of(c) != (int)cause) {
         return 0.0;
@@ -350,15 +281,15 @@ static void value_of(struct work *const w, const unsigned named, const size_t k,
                      struct dig_cause *const cause)
 {
     struct dig_fit_answer answer;
-    const size_t          n = w->lines.columns;
+    const size_t          n = w->fit.lines.columns;
     solve(w, named, true, &answer);
     double value    = 0.0;
     double variance = 0.0;
     for (size_t a = 0; a < n; a++) {
         const double share = share_of(w, k, a);
-        value += share * w->at[a];
+        value += share * w->fit.at[a];
         for (size_t b = 0; b < n && fabs(share) > 0.0; b++) {
-            variance += share * share_of(w, k, b) * w->covariance[a * n + b];
+            variance += share * share_of(w, k, b) * w->fit.covariance[a * n + b];
         }
     }
     cause->value = value;
@@ -372,8 +303,7 @@ static int tied(struct work *const w, const unsigned named, const unsigned k)
     int    other = -1;
     for (unsigned o = 0; o < DIG_CAUSES; o++) {
         const unsigned instead = (named & ~(1U << k)) | 1U << o;
-        const double   then =
-            w->asked[o] && ((named >> o) & 1U) == 0 ? evidence(w, instead) : -(double)INFINITY;
+        const double   then = ((named >> o) & 1U) == 0 ? evidence(w, instead) : -(double)INFINITY;
         if (then > most) {
             most  = then;
             other = (int)o;
@@ -403,11 +333,11 @@ static void figures(struct work *const w, const unsigned named, struct dig_cause
 static void rests(const struct work *const w, const double at[], double rms[DIG_JOINTS],
                   double rms_N[DIG_JOINTS])
 {
-    double *const rest               = w->lines.work;
+    double *const rest               = w->fit.lines.work;
     double        sum[DIG_JOINTS]    = { 0.0 };
     double        sum_N2[DIG_JOINTS] = { 0.0 };
     double        count[DIG_JOINTS]  = { 0.0 };
-    dig_lines_rest(&w->lines, at, rest);
+    dig_lines_rest(&w->fit.lines, at, rest);
     for (size_t r = 0; r < w->air->rows; r++) {
         sum[w->air->row[r].joint] += rest[r] * rest[r];
         sum_N2[w->air->row[r].joint] += pow(rest[r] * w->air->row[r].sigma_N, 2.0);
@@ -425,43 +355,33 @@ static enum dig_status work_make(struct dig_air *const air, struct work *const w
     for (size_t p = 0; p < DIG_FILE_ERRORS; p++) {
         scale[p] = p < LINKS ? DIG_RAD_PER_DEG : air->machine.link[p - LINKS].mass_kg;
     }
-    w->air                 = air;
-    enum dig_status status = dig_lines_make(air, scale, &w->lines);
-    if (status == DIG_OK) {
-        status = dig_fit_make(&w->lines, &w->fit);
-    }
-    if (status == DIG_OK) {
-        w->covariance = malloc(w->lines.columns * w->lines.columns * sizeof(double));
-        status        = w->covariance != NULL ? DIG_OK : DIG_ENOMEM;
-    }
-    return status;
+    w->air = air;
+    return dig_fit_make(air, scale, &w->fit);
 }
 
 enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_JOINTS],
                                 struct dig_causes *const causes, struct dig_correction correction[])
 {
     assert(air != NULL && moves != NULL && causes != NULL && correction != NULL);
-    struct work     w      = { .least = log(DIG_CAUSES / false_alarm) };
-    enum dig_status status = work_make(air, &w);
+    struct work           w      = { .asked = 1U << DIG_CAUSE_DELAY };
+    const enum dig_status status = work_make(air, &w);
     if (status == DIG_OK) {
         double alone[DIG_LINES_COLUMNS_MAX];
-        for (size_t k = 0; k < DIG_CAUSES; k++) {
-            w.asked[k] = k == DIG_CAUSE_DELAY || moves[k % DIG_JOINTS];
+        for (size_t k = 0; k < DIG_CAUSE_DELAY; k++) {
+            w.asked |= moves[k % DIG_JOINTS] ? 1U << k : 0U;
         }
         set_widths(&w);
         const unsigned named = find(&w);
-        rests(&w, w.lines.absent, causes->rest_plain, causes->rest_N);
-        rests(&w, w.lines.at, causes->rest, causes->rest_N);
+        rests(&w, w.fit.lines.absent, causes->rest_plain, causes->rest_N);
+        rests(&w, w.fit.lines.at, causes->rest, causes->rest_N);
         figures(&w, named, causes->cause);
         // The causes alone: what is within its tolerance is no one's to mend.
-        for (size_t c = 0; c < w.lines.columns; c++) {
-            const int cause = cause_of(&w.lines.column[c]);
-            alone[c]        = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.lines.at[c] : 0.0;
+        for (size_t c = 0; c < w.fit.lines.columns; c++) {
+            const int cause = cause_of(&w.fit.lines.column[c]);
+            alone[c]        = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.fit.lines.at[c] : 0.0;
         }
-        dig_lines_correct(&w.lines, alone, correction);
+        dig_lines_correct(&w.fit.lines, alone, correction);
     }
     dig_fit_finish(&w.fit);
-    dig_lines_finish(&w.lines);
-    free(w.covariance);
     return status;
 }

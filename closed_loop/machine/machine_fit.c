@@ -12,21 +12,33 @@
 static const double width[] = { 1.0, 0.25, 0.0625, 0.015625 };
 enum { WIDTHS = sizeof width / sizeof width[0] };
 
-enum dig_status dig_fit_make(const struct dig_lines *const lines, struct dig_fit *const fit)
+// A step is halved so often.
+enum { HALVINGS = 6 };
+
+enum dig_status dig_fit_make(struct dig_air *const air, const double file_scale[DIG_FILE_ERRORS],
+                             struct dig_fit *const fit)
 {
-    assert(lines != NULL && fit != NULL);
-    const size_t  n      = lines->columns;
-    double *const memory = malloc(2 * n * n * sizeof *memory);
-    if (memory == NULL) {
+    assert(air != NULL && fit != NULL);
+    *fit                         = (struct dig_fit){ .s2 = 1.0 };
+    const enum dig_status status = dig_lines_make(air, file_scale, &fit->lines);
+    const size_t          n2     = fit->lines.columns * fit->lines.columns;
+    if (status != DIG_OK) {
+        return status;
+    }
+    fit->slope2 = malloc(3 * n2 * sizeof *fit->slope2);
+    if (fit->slope2 == NULL) {
+        dig_fit_finish(fit);
         return DIG_ENOMEM;
     }
-    *fit = (struct dig_fit){ .lines = lines, .slope2 = memory, .work = memory + n * n, .s2 = 1.0 };
+    fit->work       = fit->slope2 + n2;
+    fit->covariance = fit->work + n2;
     return DIG_OK;
 }
 
 void dig_fit_finish(struct dig_fit *const fit)
 {
     if (fit != NULL) {
+        dig_lines_finish(&fit->lines);
         free(fit->slope2);
         *fit = (struct dig_fit){ .rows = 0.0 };
     }
@@ -58,14 +70,14 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
                         struct dig_fit_answer *const answer)
 {
     assert(fit != NULL && widths != NULL && answer != NULL);
-    const size_t  all = fit->lines->columns;
+    const size_t  all = fit->lines.columns;
     double *const h   = fit->work;
     double        x[DIG_LINES_COLUMNS_MAX];
     double        share[DIG_LINES_COLUMNS_MAX];
     size_t        column[DIG_LINES_COLUMNS_MAX];
     size_t        n = 0;
     for (size_t c = 0; c < all; c++) {
-        if (widths[c] > 0.0 && !dig_lines_is_bent(fit->lines, c)) {
+        if (widths[c] > 0.0 && !dig_lines_is_bent(&fit->lines, c)) {
             column[n]  = c;
             share[n++] = widths[c];
         }
@@ -95,23 +107,26 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
             answer->at[column[i]] = share[i] * x[i];
         }
     }
-    if (answer->sigma != NULL) {
-        memset(answer->sigma, 0, all * sizeof(double));
-    }
     if (answer->covariance != NULL) {
         memset(answer->covariance, 0, all * all * sizeof(double));
     }
-    for (size_t i = 0; i < n && (answer->sigma != NULL || answer->covariance != NULL); i++) {
+    for (size_t i = 0; i < n && answer->covariance != NULL; i++) {
         double one[DIG_LINES_COLUMNS_MAX];
         memset(one, 0, n * sizeof one[0]);
         one[i] = 1.0;
         dig_cholesky_solve(n, h, one);
-        if (answer->sigma != NULL) {
-            answer->sigma[column[i]] = share[i] * sqrt(fmax(one[i], 0.0));
-        }
-        for (size_t j = 0; j < n && answer->covariance != NULL; j++) {
+        for (size_t j = 0; j < n; j++) {
             answer->covariance[column[i] * all + column[j]] = share[i] * share[j] * one[j];
         }
+    }
+}
+
+// The same width for all columns of a set.
+static void give_width(const struct dig_fit *const fit, const unsigned set, const size_t wide,
+                       double widths[])
+{
+    for (size_t c = 0; c < fit->lines.columns; c++) {
+        widths[c] = ((set >> fit->lines.column[c].effect) & 1U) != 0 ? width[wide] : 0.0;
     }
 }
 
@@ -120,9 +135,7 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
                      struct dig_fit_answer *const answer)
 {
     double widths[DIG_LINES_COLUMNS_MAX];
-    for (size_t c = 0; c < fit->lines->columns; c++) {
-        widths[c] = ((set >> fit->lines->column[c].effect) & 1U) != 0 ? width[wide] : 0.0;
-    }
+    give_width(fit, set, wide, widths);
     dig_fit_solve_each(fit, widths, answer);
     answer->width = width[wide];
 }
@@ -130,7 +143,7 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
 // Moves the equations from where the lines are to all absent; bent columns stay.
 static void move_to_absent(struct dig_fit *const fit)
 {
-    const struct dig_lines *const lines = fit->lines;
+    const struct dig_lines *const lines = &fit->lines;
     const size_t                  n     = lines->columns;
     double                        back[DIG_LINES_COLUMNS_MAX]; // how far each goes
     double                        more[DIG_LINES_COLUMNS_MAX];
@@ -149,17 +162,17 @@ static void move_to_absent(struct dig_fit *const fit)
     }
 }
 
-void dig_fit_sum(struct dig_fit *const fit, const double weight[])
+void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double widths[])
 {
-    assert(fit != NULL && weight != NULL);
-    const size_t n = fit->lines->columns;
+    assert(fit != NULL);
+    const size_t n = fit->lines.columns;
     fit->rows      = 0.0;
     fit->rest2     = 0.0;
     memset(fit->slope_rest, 0, n * sizeof(double));
     memset(fit->slope2, 0, n * n * sizeof(double));
-    for (size_t d = 0; d < fit->lines->digs; d++) {
-        const struct dig_lines_normal *const normal = &fit->lines->normal[d];
-        const double                         w      = weight[d];
+    for (size_t d = 0; d < fit->lines.digs; d++) {
+        const struct dig_lines_normal *const normal = &fit->lines.normal[d];
+        const double                         w      = weight != NULL ? weight[d] : 1.0;
         if (!(w > 0.0)) {
             continue;
         }
@@ -175,8 +188,10 @@ void dig_fit_sum(struct dig_fit *const fit, const double weight[])
     move_to_absent(fit);
 
     struct dig_fit_answer best = { .at = NULL };
-    fit->s2                    = 1.0;
-    solve_at(fit, DIG_MACHINE_ALL_EFFECTS, 0, &best);
+    double                effects[DIG_LINES_COLUMNS_MAX];
+    give_width(fit, DIG_MACHINE_ALL_EFFECTS, 0, effects);
+    fit->s2 = 1.0;
+    dig_fit_solve_each(fit, widths != NULL ? widths : effects, &best);
     const double free_rows = fmax(fit->rows - (double)n, 0.25 * fit->rows);
     fit->s2                = fmax(1.0, best.rest2 / fmax(free_rows, 1.0));
 }
@@ -222,16 +237,46 @@ double dig_fit_evidence(const struct dig_fit *const fit, const unsigned set)
     return answer.log_evidence;
 }
 
-// The effect whose change gains most, and the gain.
-static double best_change(const struct dig_fit *const fit, const unsigned set, const bool adds,
+// What is left at other values, and what priors of these widths lose there.
+static double rest2_at(const struct dig_fit *const fit, const double at[], const double widths[])
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < fit->lines.columns; c++) {
+        sum += widths[c] > 0.0 ? pow(at[c] / widths[c], 2.0) : 0.0;
+    }
+    return dig_lines_rest2(&fit->lines, at) + fit->s2 * sum;
+}
+
+double dig_fit_step(struct dig_fit *const fit, const double widths[])
+{
+    assert(fit != NULL && widths != NULL);
+    const double now = rest2_at(fit, fit->lines.at, widths);
+    for (int halved = 0; halved < HALVINGS; halved++) {
+        double tried[DIG_LINES_COLUMNS_MAX];
+        double moved = 0.0;
+        for (size_t c = 0; c < fit->lines.columns; c++) {
+            const double way = ldexp(fit->at[c] - fit->lines.at[c], -halved);
+            tried[c]         = fit->lines.at[c] + way;
+            moved            = widths[c] > 0.0 ? fmax(moved, fabs(way) / widths[c]) : moved;
+        }
+        if (rest2_at(fit, tried, widths) <= now) {
+            memcpy(fit->lines.at, tried, fit->lines.columns * sizeof(double));
+            return moved;
+        }
+    }
+    return 0.0;
+}
+
+// The one whose change gains most, and the gain.
+static double best_change(const struct dig_greedy *const from, const unsigned set, const bool adds,
                           unsigned *const changed)
 {
-    const double now  = dig_fit_evidence(fit, set);
+    const double now  = from->evidence(from->context, set);
     double       best = -INFINITY;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+    for (unsigned e = 0; e < from->n; e++) {
         const unsigned bit = 1U << e;
         if (((set & bit) == 0) == adds) {
-            const double gain = dig_fit_evidence(fit, set ^ bit) - now;
+            const double gain = from->evidence(from->context, set ^ bit) - now;
             if (gain > best) {
                 best     = gain;
                 *changed = set ^ bit;
@@ -241,22 +286,34 @@ static double best_change(const struct dig_fit *const fit, const unsigned set, c
     return best;
 }
 
-unsigned dig_fit_select(const struct dig_fit *const fit, const double least, unsigned set)
+unsigned dig_greedy_select(const struct dig_greedy *const from, unsigned set)
 {
-    assert(fit != NULL);
-    for (int step = 0; step < DIG_MACHINE_EFFECTS; step++) {
+    assert(from != NULL && from->evidence != NULL);
+    for (unsigned step = 0; step < from->n; step++) {
         unsigned more = set;
-        if (!(best_change(fit, set, true, &more) > least)) {
+        if (!(best_change(from, set, true, &more) > from->least)) {
             break;
         }
         set = more;
-        for (int back = 0; back < DIG_MACHINE_EFFECTS && set != 0; back++) {
+        for (unsigned back = 0; back < from->n && set != 0; back++) {
             unsigned less = set;
-            if (!(best_change(fit, set, false, &less) > -least)) {
+            if (!(best_change(from, set, false, &less) > -from->least)) {
                 break;
             }
             set = less;
         }
     }
     return set;
+}
+
+static double evidence(void *const context, const unsigned set)
+{
+    return dig_fit_evidence(context, set);
+}
+
+unsigned dig_fit_select(struct dig_fit *const fit, const double least, const unsigned set)
+{
+    assert(fit != NULL);
+    return dig_greedy_select(&(struct dig_greedy){ DIG_MACHINE_EFFECTS, least, evidence, fit },
+                             set);
 }

@@ -20,14 +20,18 @@
 
 #include <stddef.h>
 
-/// Normal equations summed over digs, at all parameters absent. Free with dig_fit_finish().
+/// Free air made linear, its normal equations summed over digs, at all parameters absent. Free with
+/// dig_fit_finish().
 struct dig_fit {
-    const struct dig_lines *lines;
-    double                  rows, rest2;
-    double                  slope_rest[DIG_LINES_COLUMNS_MAX]; // as struct dig_lines_normal
-    double                 *slope2;
-    double                  s2;   // variance of the noise in the rows' sigmas
-    double                 *work; // [columns * columns]
+    struct dig_lines lines;
+    double           rows, rest2;
+    double           slope_rest[DIG_LINES_COLUMNS_MAX]; // as struct dig_lines_normal
+    double          *slope2;
+    double           s2;   // variance of the noise in the rows' sigmas
+    double          *work; // [columns * columns]
+    // Room for answers.
+    double  at[DIG_LINES_COLUMNS_MAX];
+    double *covariance; // [columns * columns]
 };
 
 /// One set of effects, solved.
@@ -36,19 +40,21 @@ struct dig_fit_answer {
     double rest2; // that remains
     double width; // of the prior
     // The caller's, or NULL; 0 where not of the set.
-    double *at, *sigma; // [columns]
+    double *at;         // [columns]
     double *covariance; // [columns * columns]
 };
 
-DIG_MUST_CHECK enum dig_status dig_fit_make(const struct dig_lines *lines, struct dig_fit *fit);
-void                           dig_fit_finish(struct dig_fit *fit);
+/// Lines up the parameters as dig_lines_make() does. DIG_ENOMEM: *fit is empty then.
+DIG_MUST_CHECK enum dig_status
+dig_fit_make(struct dig_air *air, const double file_scale[DIG_FILE_ERRORS], struct dig_fit *fit);
+void dig_fit_finish(struct dig_fit *fit);
 
-/// Sums the digs with these weights (how often each counts) and takes s2 from what all effects
-/// together leave.
-void dig_fit_sum(struct dig_fit *fit, const double weight[]);
+/// Sums the digs with these weights (how often each counts; NULL: once) and takes s2 from what all
+/// columns with priors of these widths together leave; NULL: from what all effects do.
+void dig_fit_sum(struct dig_fit *fit, const double weight[], const double widths[]);
 
 /// Solves for the effects of the set, a bit each of enum dig_effect_id. A bent column stays where
-/// the lines have it. at and sigma of *answer are filled.
+/// the lines have it.
 void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
 /// The same with priors as wide as the parameters' scales, which hold the more the less the air
@@ -63,8 +69,24 @@ void dig_fit_solve_each(const struct dig_fit *fit, const double widths[],
 /// The log evidence of a set alone.
 double dig_fit_evidence(const struct dig_fit *fit, unsigned set);
 
-/// Adds effects to the set while the log evidence grows by least at least, the best one each time;
-/// then takes out what it no longer needs.
-unsigned dig_fit_select(const struct dig_fit *fit, double least, unsigned set);
+/// Moves the lines to fit->at, or half of the way, or half of that: until what is left, not linear,
+/// grows no more than priors of these widths gain. How far the farthest column moved, in widths;
+/// one of width 0 goes along and does not count.
+double dig_fit_step(struct dig_fit *fit, const double widths[]);
+
+/// What a set is chosen from, a bit each.
+struct dig_greedy {
+    unsigned n;
+    double   least;                                  // log evidence that one must bring
+    double (*evidence)(void *context, unsigned set); // -INFINITY: no such set
+    void *context;
+};
+
+/// Adds to the set while the log evidence grows by more than least, the best one each time; after
+/// each takes out what it no longer needs.
+unsigned dig_greedy_select(const struct dig_greedy *from, unsigned set);
+
+/// The same of effects.
+unsigned dig_fit_select(struct dig_fit *fit, double least, unsigned set);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_FIT_H

@@ -16,11 +16,7 @@
 
 struct dig_machine_search {
     struct dig_air           air;
-    struct dig_lines         lines;
     struct dig_fit           fit;
-    double                   at[DIG_LINES_COLUMNS_MAX];
-    double                   sigma[DIG_LINES_COLUMNS_MAX];
-    double                  *covariance; // [columns * columns]
     unsigned                 set;
     double                   noise2;     // variance that rows may have without being unclear
     double                   least;      // log evidence that an effect must bring

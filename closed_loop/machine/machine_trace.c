@@ -24,113 +24,67 @@ static const double own_noise = 1.4;
 static void search_finish(struct dig_machine_search *const s)
 {
     dig_fit_finish(&s->fit);
-    dig_lines_finish(&s->lines);
     dig_air_finish(&s->air);
-    free(s->covariance);
 }
 
 static enum dig_status search_make(const struct dig_machine_side *const side,
                                    struct dig_machine_search *const     s)
 {
-    enum dig_status status =
+    const enum dig_status status =
         dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
-    if (status == DIG_OK) {
-        status = dig_lines_make(&s->air, NULL, &s->lines);
-    }
-    if (status == DIG_OK) {
-        status = dig_fit_make(&s->lines, &s->fit);
-    }
-    if (status == DIG_OK) {
-        s->covariance = malloc(s->lines.columns * s->lines.columns * sizeof(double));
-        status        = s->covariance != NULL ? DIG_OK : DIG_ENOMEM;
-    }
-    return status;
-}
-
-static void sum_all(struct dig_machine_search *const s)
-{
-    double weight[DIG_MEASURED_MAX];
-    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
-        weight[d] = 1.0;
-    }
-    dig_fit_sum(&s->fit, weight);
-}
-
-static double penalty(const struct dig_machine_search *const s, const double at[],
-                      const double width)
-{
-    double sum = 0.0;
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        sum += pow(at[c] / width, 2.0);
-    }
-    return s->fit.s2 * sum;
+    return status == DIG_OK ? dig_fit_make(&s->air, NULL, &s->fit) : status;
 }
 
 // Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
 static void refine(struct dig_machine_search *const s)
 {
-    const size_t n = s->lines.columns;
     for (int i = 0; i < REFINEMENTS; i++) {
         const double s2 = s->fit.s2;
-        dig_lines_update(&s->lines, s->set);
-        sum_all(s);
+        dig_lines_update(&s->fit.lines, s->set);
+        dig_fit_sum(&s->fit, NULL, NULL);
         s->fit.s2                    = s2; // of all effects together, which these are not
-        struct dig_fit_answer answer = { .at = s->at };
-        double                tried[DIG_LINES_COLUMNS_MAX] = { 0.0 };
+        struct dig_fit_answer answer = { .at = s->fit.at };
+        double                widths[DIG_LINES_COLUMNS_MAX];
         dig_fit_solve(&s->fit, s->set, &answer);
-
-        const double now =
-            dig_lines_rest2(&s->lines, s->lines.at) + penalty(s, s->lines.at, answer.width);
-        double moved = 0.0;
-        for (int halved = 0; halved < 6; halved++) {
-            const double share = ldexp(1.0, -halved);
-            for (size_t c = 0; c < n; c++) {
-                tried[c] = s->lines.at[c] + share * (s->at[c] - s->lines.at[c]);
-            }
-            if (dig_lines_rest2(&s->lines, tried) + penalty(s, tried, answer.width) <= now) {
-                for (size_t c = 0; c < n; c++) {
-                    moved          = fmax(moved, fabs(tried[c] - s->lines.at[c]));
-                    s->lines.at[c] = tried[c];
-                }
-                break;
-            }
+        for (size_t c = 0; c < s->fit.lines.columns; c++) {
+            widths[c] = answer.width; // of those that have left the set, too
         }
-        if (moved < 0.005) {
+        if (dig_fit_step(&s->fit, widths) * answer.width < 0.005) {
             break;
         }
     }
-    s->slow  = dig_lines_judge(&s->lines);
-    s->rest2 = dig_lines_rest2(&s->lines, s->lines.at);
-    dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
-    sum_all(s);
+    s->slow  = dig_lines_judge(&s->fit.lines);
+    s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
+    dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+    dig_fit_sum(&s->fit, NULL, NULL);
 }
 
 // The equations without any effect, rows as far as their own scatter lets them be known.
 static void begin(struct dig_machine_search *const s)
 {
-    struct dig_fit_answer all = { .at = s->at };
-    dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
-    sum_all(s);
+    struct dig_fit_answer all = { .at = s->fit.at };
+    dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+    dig_fit_sum(&s->fit, NULL, NULL);
     dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
     s->noise2 = 1.0;
-    if (dig_machine_noise_widen(&s->lines, s->at)) {
+    if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
         s->noise2 = own_noise;
-        dig_lines_update(&s->lines, DIG_MACHINE_ALL_EFFECTS);
-        sum_all(s);
+        dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+        dig_fit_sum(&s->fit, NULL, NULL);
     }
-    s->slow = dig_lines_judge(&s->lines);
+    s->slow = dig_lines_judge(&s->fit.lines);
 }
 
 // What is left of the rows of each dig where the lines stand, for a report.
 static void rest_by_dig(struct dig_machine_search *const s)
 {
-    double *const rest                    = s->lines.work;
+    double *const rest                    = s->fit.lines.work;
     double        count[DIG_MEASURED_MAX] = { 0.0 };
     double        sum[DIG_MEASURED_MAX]   = { 0.0 };
-    dig_lines_rest(&s->lines, s->lines.at, rest);
+    dig_lines_rest(&s->fit.lines, s->fit.lines.at, rest);
     for (size_t r = 0; r < s->air.rows; r++) {
         const size_t d = s->air.segment[s->air.row[r].segment].dig;
-        sum[d] += pow(s->lines.trust[r] * rest[r], 2.0);
+        sum[d] += pow(s->fit.lines.trust[r] * rest[r], 2.0);
         count[d] += 1.0;
     }
     for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
@@ -141,7 +95,7 @@ static void rest_by_dig(struct dig_machine_search *const s)
 // In scales.
 static double common_payload(const struct dig_machine_search *const s)
 {
-    return s->lines.at[dig_lines_first(&s->lines, DIG_EFFECT_PAYLOAD)];
+    return s->fit.lines.at[dig_lines_first(&s->fit.lines, DIG_EFFECT_PAYLOAD)];
 }
 
 // A first dig that carried more than the others looks like a bucket that is heavier and carries
@@ -153,10 +107,10 @@ static void take_weight_for_payload(struct dig_machine_search *const s)
         return;
     }
     s->set &= ~weighs;
-    for (size_t c = 0; c < s->lines.columns; c++) {
-        const bool gone = s->lines.column[c].effect == DIG_EFFECT_BUCKET_WEIGHT ||
-                          s->lines.column[c].effect == DIG_EFFECT_PAYLOAD;
-        s->lines.at[c] = gone ? 0.0 : s->lines.at[c];
+    for (size_t c = 0; c < s->fit.lines.columns; c++) {
+        const bool gone = s->fit.lines.column[c].effect == DIG_EFFECT_BUCKET_WEIGHT ||
+                          s->fit.lines.column[c].effect == DIG_EFFECT_PAYLOAD;
+        s->fit.lines.at[c] = gone ? 0.0 : s->fit.lines.at[c];
     }
     refine(s);
 }
@@ -167,7 +121,7 @@ static void select_effects(struct dig_machine_search *const s)
     static const unsigned rubs = 1U << DIG_EFFECT_CYLINDER_FRICTION;
     begin(s);
     rest_by_dig(s);
-    s->rest2_none = dig_lines_rest2(&s->lines, s->lines.at);
+    s->rest2_none = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
     s->rest2      = s->rest2_none;
     for (int round = 0; round < ROUNDS; round++) {
         // Where the first steps have led, others may do better, and some may not be needed.
@@ -194,16 +148,16 @@ static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
     memset(inclusion, 0, DIG_MACHINE_EFFECTS * sizeof inclusion[0]);
     for (int b = 0; b < BOOTSTRAPS; b++) {
         double weight[DIG_MEASURED_MAX] = { 0.0 };
-        for (size_t d = 0; d < s->lines.digs; d++) {
-            weight[dig_chance_index(&seed, s->lines.digs)] += 1.0;
+        for (size_t d = 0; d < s->fit.lines.digs; d++) {
+            weight[dig_chance_index(&seed, s->fit.lines.digs)] += 1.0;
         }
-        dig_fit_sum(&s->fit, weight);
+        dig_fit_sum(&s->fit, weight, NULL);
         const unsigned set = dig_fit_select(&s->fit, s->least, 0);
         for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
             inclusion[e] += (double)((set >> e) & 1U) / BOOTSTRAPS;
         }
     }
-    sum_all(s);
+    dig_fit_sum(&s->fit, NULL, NULL);
 }
 
 // More effects than one trusts to be there at once share out the form of a cause that has none of
@@ -220,7 +174,7 @@ static bool is_makeshift(const struct dig_machine_search *const s)
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
 static void doubt_names(struct dig_machine_search *const s)
 {
-    s->drift = dig_machine_drift_ask(&s->lines, s->fit.s2);
+    s->drift = dig_machine_drift_ask(&s->fit.lines, s->fit.s2);
     if (s->set == 0 || !(s->drift.log_lead > DIG_MACHINE_TIE) ||
         s->drift.log_evidence < dig_fit_evidence(&s->fit, s->set)) {
         s->drift.follows = NULL;
