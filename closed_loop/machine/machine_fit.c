@@ -44,28 +44,6 @@ void dig_fit_finish(struct dig_fit *const fit)
     }
 }
 
-// L of H = L L^T in place of its lower triangle; the log of its determinant.
-static double decompose(const size_t n, double h[])
-{
-    double log_det = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            double sum = h[i * n + j];
-            for (size_t k = 0; k < j; k++) {
-                sum -= h[i * n + k] * h[j * n + k];
-            }
-            if (i == j) {
-                const double root = sqrt(fmax(sum, 1e-12));
-                h[i * n + i]      = root;
-                log_det += 2.0 * log(root);
-            } else {
-                h[i * n + j] = sum / h[j * n + j];
-            }
-        }
-    }
-    return log_det;
-}
-
 void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
                         struct dig_fit_answer *const answer)
 {
@@ -89,7 +67,7 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
         h[i * n + i] += 1.0;
         x[i] = -share[i] * fit->slope_rest[column[i]] / fit->s2;
     }
-    const double log_det = decompose(n, h);
+    const bool solved = dig_cholesky(n, h) == DIG_OK; // H is never less than I
     dig_cholesky_solve(n, h, x);
 
     double gain  = 0.0;
@@ -99,7 +77,7 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
         size2 += x[i] * x[i];
     }
     answer->width        = 1.0;
-    answer->log_evidence = 0.5 * (gain - log_det);
+    answer->log_evidence = solved ? 0.5 * (gain - dig_lower_log_det(n, h)) : (double)-INFINITY;
     answer->rest2        = fit->rest2 - fit->s2 * (gain + size2);
     if (answer->at != NULL) {
         memset(answer->at, 0, all * sizeof(double));
