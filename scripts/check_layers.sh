@@ -22,9 +22,9 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # is its roof. Behind each the headers that other folders may include, and after | those that only the rooms above
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
-core                   approach bed bed_plan command_line contact curve did_you_mean effect entry_set error geometry
-                       gravel_match ground help linkage log_normal machine model name observation outline part
-                       recording regular sample scene sha256 shell similar sort status table_step text units vec2
+core                   approach bed bed_plan chance command_line contact curve did_you_mean effect entry_set error
+                       geometry gravel_match ground help linkage log_normal machine model name observation outline
+                       part recording regular sample scene sha256 shell similar sort status table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
@@ -50,7 +50,7 @@ offline_dem/sweep      sweep
 offline_dem/device     engine_cuda | device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
-closed_loop/numeric    | chance dense levenberg vectors
+closed_loop/numeric    | dense levenberg vectors
 closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise regressors
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs

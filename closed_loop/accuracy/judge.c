@@ -2,8 +2,8 @@
 
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/model/soil_fit.h"
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/recordings/features.h"
+#include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>

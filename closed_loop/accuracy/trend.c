@@ -1,7 +1,7 @@
 #include "closed_loop/accuracy/trend.h"
 
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/recordings/measured.h"
+#include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "closed_loop/design/design_view.h"
 
 #include "closed_loop/model/soil_fit.h"
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
+#include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "closed_loop/fit/posterior.h"
 
 #include "closed_loop/fit/likelihood.h"
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/numeric/dense.h"
+#include "core/chance.h"
 #include "core/sort.h"
 
 #include <assert.h>

@@ -4,12 +4,11 @@
 #include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_side_private.h"
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };

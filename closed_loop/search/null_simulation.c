@@ -1,6 +1,6 @@
 #include "closed_loop/search/null_simulation.h"
 
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>

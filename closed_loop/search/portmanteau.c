@@ -1,7 +1,7 @@
 #include "closed_loop/search/portmanteau.h"
 
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/search/null_simulation.h"
+#include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "closed_loop/search/search_work.h"
 
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>

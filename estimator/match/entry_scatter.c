@@ -1,5 +1,6 @@
 #include "estimator/match/entry_scatter.h"
 
+#include "core/chance.h"
 #include "core/units.h"
 
 #include <assert.h>
@@ -10,21 +11,6 @@ const double dig_entry_scatter_between[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS] =
     { DIG_ENTRY_SCATTER_MY_FX, 1.0, DIG_ENTRY_SCATTER_FX_FZ },
     { DIG_ENTRY_SCATTER_MY_FZ, DIG_ENTRY_SCATTER_FX_FZ, 1.0 },
 };
-
-static double uniform(uint64_t *const state) // splitmix64
-{
-    *state += 0x9E3779B97F4A7C15U;
-    uint64_t z = *state;
-    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-}
-
-static double normal(uint64_t *const state)
-{
-    const double u = 1.0 - uniform(state);
-    return sqrt(-2.0 * log(u)) * cos(2.0 * DIG_PI * uniform(state));
-}
 
 // Weights of the knots around each point; their squares sum to 1.
 void dig_entry_scatter_make(const struct dig_trajectory *const trajectory, const double tooth_m,
@@ -59,9 +45,9 @@ void dig_entry_scatter_draw(const struct dig_entry_scatter *const scatter, uint6
 {
     assert(scatter != NULL && seed != NULL && error != NULL);
     double       knot[DIG_ENTRY_SCATTER_KNOTS];
-    const double whole = sqrt(DIG_ENTRY_SCATTER_SHARED) * normal(seed);
+    const double whole = sqrt(DIG_ENTRY_SCATTER_SHARED) * dig_chance_normal(seed);
     for (size_t j = 0; j < scatter->knots; j++) {
-        knot[j] = sqrt(1.0 - DIG_ENTRY_SCATTER_SHARED) * normal(seed);
+        knot[j] = sqrt(1.0 - DIG_ENTRY_SCATTER_SHARED) * dig_chance_normal(seed);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         double sum = whole;

@@ -2,7 +2,7 @@
 
 #include "closed_loop/fit/common_error.h"
 
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
 

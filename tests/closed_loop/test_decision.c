@@ -1,6 +1,6 @@
 #include "closed_loop/accuracy/decision.h"
 
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 #include "tests/made_campaign.h"
 #include "tests/testlib.h"
 

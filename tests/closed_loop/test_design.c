@@ -2,8 +2,8 @@
 
 #include "closed_loop/design/design.h"
 
-#include "closed_loop/numeric/chance.h"
 #include "closed_loop/report/design_report.h"
+#include "core/chance.h"
 #include "tests/made_table.h"
 #include "tests/scratch.h"
 

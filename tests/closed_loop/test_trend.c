@@ -1,6 +1,6 @@
 #include "closed_loop/accuracy/trend.h"
 
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 #include "tests/testlib.h"
 
 enum { DIGS = 8, POINTS = 100 };

@@ -1,7 +1,7 @@
 // Random numbers that a seed repeats, and the tails of distributions.
 
-#ifndef DIG_CLOSED_LOOP_NUMERIC_CHANCE_H
-#define DIG_CLOSED_LOOP_NUMERIC_CHANCE_H
+#ifndef DIG_CORE_CHANCE_H
+#define DIG_CORE_CHANCE_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -22,4 +22,4 @@ void dig_chance_interval(size_t n, double drawn[], double *low, double *high);
 /// incomplete gamma function by series and continued fraction, relative error below 1e-10.
 double dig_chance_gamma_tail(double mean, double variance, double x);
 
-#endif // DIG_CLOSED_LOOP_NUMERIC_CHANCE_H
+#endif // DIG_CORE_CHANCE_H

@@ -1,4 +1,4 @@
-#include "closed_loop/numeric/chance.h"
+#include "core/chance.h"
 
 #include "core/sort.h"
 #include "core/units.h"
