@@ -70,7 +70,8 @@ static void left_of(void *const context, const double x[], double r[])
     const struct moments *const m = context;
     for (size_t g = 0; g < m->batch->groups; g++) {
         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        dig_response_surface_curve(m->batch->surface, m->batch->group[g].trajectory, x, curve);
+        dig_response_surface_curve(m->batch->soil->surface, m->batch->group[g].trajectory, x,
+                                   curve);
         for (size_t p = 0; p < POINTS; p++) {
             r[g * POINTS + p] =
                 m->weight[g][p] * (m->target_Nm[g][p] - curve[DIG_CHANNEL_MY_Nm][p * EVERY]);
@@ -94,7 +95,7 @@ static double least_left(struct moments *const m, const double place[DIG_AXES])
                                    .memory     = memory };
     double               least = INFINITY;
     for (int a = 0; a < DIG_AXES; a++) {
-        l.high[a] = m->batch->surface->set->axis_count[a] > 1 ? 1.0 : 0.0;
+        l.high[a] = m->batch->soil->surface->set->axis_count[a] > 1 ? 1.0 : 0.0;
         l.low[a]  = -l.high[a];
     }
     for (size_t s = 0; s <= sizeof from / sizeof from[0]; s++) {
@@ -113,8 +114,9 @@ static void begin_group(struct moments *const m, const struct dig_fitted *const 
 {
     const struct dig_whitened_digs_group *const group = &m->batch->group[g];
     double                                      sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    weigh(m->batch->surface->set, group, first, last, m->weight[g]);
-    dig_judge_sd(m->batch->surface, m->batch->scatter, group->trajectory, fitted->number, 0.0, sd);
+    weigh(m->batch->soil->surface->set, group, first, last, m->weight[g]);
+    dig_judge_sd(m->batch->soil->surface, m->batch->scatter, group->trajectory, fitted->number, 0.0,
+                 sd);
     for (size_t p = 0; p < POINTS; p++) {
         const double one = m->weight[g][p] * sd[DIG_CHANNEL_MY_Nm][p * EVERY];
         *floor += one * one * (1.0 / (double)group->digs + fitted->noise[g]);
@@ -135,7 +137,7 @@ double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
         double last;
         mean_of(batch, measured, g, ADDED, m.target_Nm[g], &first, &last);
         begin_group(&m, fitted, g, first, last, &floor);
-        dig_response_surface_curve(batch->surface, batch->group[g].trajectory, fitted->number,
+        dig_response_surface_curve(batch->soil->surface, batch->group[g].trajectory, fitted->number,
                                    curve);
         for (size_t p = 0; p < POINTS; p++) {
             added += pow(m.weight[g][p] * m.target_Nm[g][p], 2.0);
@@ -178,11 +180,10 @@ static struct dig_fitted leave_out(const struct dig_fitted *const chosen, const 
 }
 
 enum dig_status dig_effect_size_of_soil(const struct dig_whitened_digs *const batch,
-                                        const struct dig_soil *const          soil,
                                         const struct dig_fitted *const chosen, const size_t e,
                                         const double noise[], double *const size)
 {
-    assert(batch != NULL && soil != NULL && chosen != NULL && noise != NULL && size != NULL);
+    assert(batch != NULL && chosen != NULL && noise != NULL && size != NULL);
     struct dig_measured *const added = calloc(DIG_MEASURED_MAX, sizeof *added);
     if (added == NULL) {
         return DIG_ENOMEM;
@@ -194,8 +195,8 @@ enum dig_status dig_effect_size_of_soil(const struct dig_whitened_digs *const ba
         double       with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         double       without[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         added[m] = batch->measured[m];
-        dig_hypothesis_curve(soil, &chosen->hypothesis, chosen->number, &added[m], with);
-        dig_hypothesis_curve(soil, &less.hypothesis, less.number, &added[m], without);
+        dig_fitted_curve(batch->soil, chosen, &added[m], with);
+        dig_fitted_curve(batch->soil, &less, &added[m], without);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             added[m].machine[DIG_CHANNEL_MY_Nm][k] =
                 with[DIG_CHANNEL_MY_Nm][k] - without[DIG_CHANNEL_MY_Nm][k];

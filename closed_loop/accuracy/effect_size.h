@@ -19,7 +19,6 @@ double dig_effect_size_of_machine(const struct dig_whitened_digs *batch,
 /// The same of effect number e that chosen was fitted with; noise[]: what the digs of a trajectory
 /// share without it (of the plain fit). DIG_ENOMEM leaves *size as it was.
 DIG_MUST_CHECK enum dig_status dig_effect_size_of_soil(const struct dig_whitened_digs *batch,
-                                                       const struct dig_soil          *soil,
                                                        const struct dig_fitted *chosen, size_t e,
                                                        const double noise[], double *size);
 

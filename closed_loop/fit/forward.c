@@ -28,10 +28,10 @@ size_t dig_hypothesis_free(const struct dig_hypothesis *const hypothesis)
 }
 
 bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
-                             const struct dig_soil *const soil, const enum dig_effect_id effect)
+                             const enum dig_effect_id              effect)
 {
     for (size_t g = 0; g < batch->groups; g++) {
-        if (!dig_soil_knows(soil, effect, batch->group[g].trajectory)) {
+        if (!dig_soil_knows(batch->soil, effect, batch->group[g].trajectory)) {
             return false;
         }
     }
@@ -80,7 +80,7 @@ void dig_forward_add(const struct dig_soil *const soil, const struct dig_plain *
 }
 
 double dig_forward_added(const struct dig_whitened_digs *const batch, const size_t group,
-                         const struct dig_soil *const soil, const struct dig_plain *const plain,
+                         const struct dig_plain *const      plain,
                          const struct dig_hypothesis *const hypothesis, const double number[],
                          double added[DIG_FEATURES])
 {
@@ -96,46 +96,11 @@ double dig_forward_added(const struct dig_whitened_digs *const batch, const size
         if (batch->dig[i].group != group || (!differs && dig != first)) {
             continue;
         }
-        dig_forward_add(soil, plain, hypothesis, number, dig, with, &of_one);
+        dig_forward_add(batch->soil, plain, hypothesis, number, dig, with, &of_one);
         variance += share * of_one;
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             added[f] += share * (with[f] - plain->feature[f]);
         }
     }
     return variance;
-}
-
-void dig_hypothesis_features(const struct dig_soil *const       soil,
-                             const struct dig_hypothesis *const hypothesis, const double number[],
-                             const struct dig_measured *const dig, double feature[DIG_FEATURES])
-{
-    const struct dig_plain plain = dig_plain_of(soil, (size_t)dig->trajectory, number);
-    dig_forward_add(soil, &plain, hypothesis, number, dig, feature, NULL);
-}
-
-void dig_hypothesis_whitened(const struct dig_soil *const       soil,
-                             const struct dig_hypothesis *const hypothesis, const double number[],
-                             const struct dig_whitened_digs_group *const group,
-                             const struct dig_measured *const dig, double y[DIG_FEATURES])
-{
-    double feature[DIG_FEATURES];
-    dig_hypothesis_features(soil, hypothesis, number, dig, feature);
-    dig_whitened_digs_whiten(group, feature, y);
-}
-
-void dig_hypothesis_curve(const struct dig_soil *const       soil,
-                          const struct dig_hypothesis *const hypothesis, const double number[],
-                          const struct dig_measured *const dig,
-                          double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
-{
-    const size_t t = (size_t)dig->trajectory;
-    double       plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    dig_response_surface_curve(soil->surface, t, number, plain);
-    memcpy(curve, plain, sizeof plain);
-    for (size_t e = 0; e < hypothesis->effects; e++) {
-        const double share = dig_soil_share(hypothesis->effect[e], dig);
-        dig_soil_add_curve(soil, hypothesis->effect[e], t, number, number[DIG_AT_U(e)],
-                           number[DIG_AT_CONTRAST(e)], share,
-                           (const double(*)[DIG_CURVE_POINTS])plain, curve);
-    }
 }

@@ -105,7 +105,6 @@ static void fit_from(struct dig_likelihood *const likelihood, struct dig_levenbe
 }
 
 void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
-                        const struct dig_soil *const          soil,
                         const struct dig_hypothesis *const hypothesis, const double start[],
                         const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
@@ -115,7 +114,7 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
     const size_t          more = care == DIG_FIT_THOROUGH ? sizeof places / sizeof places[0] : 0;
     double                memory[MEMORY];
     struct dig_likelihood likelihood;
-    dig_likelihood_init(&likelihood, batch, soil, hypothesis);
+    dig_likelihood_init(&likelihood, batch, hypothesis);
     struct dig_levenberg l = { .unknowns   = likelihood.numbers,
                                .residuals  = likelihood.residuals,
                                .step       = 1e-4,
@@ -123,7 +122,7 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
                                .residual   = dig_likelihood_residual,
                                .context    = &likelihood,
                                .memory     = memory };
-    dig_hypothesis_bounds(soil, hypothesis, l.low, l.high);
+    dig_hypothesis_bounds(batch->soil, hypothesis, l.low, l.high);
     struct dig_fitted best = { .misfit = INFINITY };
     for (size_t s = 0; s <= more; s++) {
         double from[DIG_HYPOTHESIS_NUMBERS];
@@ -148,7 +147,6 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
 }
 
 void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
-                                 const struct dig_soil *const          soil,
                                  const struct dig_fitted *const        beside,
                                  struct dig_fitted *const              fitted)
 {
@@ -159,7 +157,7 @@ void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
         struct dig_hypothesis unlisted = beside->hypothesis;
         struct dig_fitted     tried;
         unlisted.unlisted = sizes[i];
-        dig_hypothesis_fit(batch, soil, &unlisted, beside->number, DIG_FIT_BARE, &tried);
+        dig_hypothesis_fit(batch, &unlisted, beside->number, DIG_FIT_BARE, &tried);
         if (tried.misfit < best.misfit) {
             best = tried;
         }
@@ -169,25 +167,56 @@ void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
 }
 
 void dig_hypothesis_errors(const struct dig_whitened_digs *const batch,
-                           const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                           struct dig_common_error error[])
+                           const struct dig_fitted *const fitted, struct dig_common_error error[])
 {
     struct dig_likelihood likelihood;
-    dig_likelihood_init(&likelihood, batch, soil, &fitted->hypothesis);
+    dig_likelihood_init(&likelihood, batch, &fitted->hypothesis);
     dig_likelihood_weigh(&likelihood, fitted->number);
     memcpy(error, likelihood.error, batch->groups * sizeof error[0]);
 }
 
 double dig_hypothesis_squares(const struct dig_whitened_digs *const batch,
-                              const struct dig_soil *const          soil,
                               const struct dig_fitted *const        fitted,
                               const struct dig_fitted *const        by)
 {
     struct dig_likelihood own;
     struct dig_likelihood other;
-    dig_likelihood_init(&own, batch, soil, &fitted->hypothesis);
-    dig_likelihood_init(&other, batch, soil, &by->hypothesis);
+    dig_likelihood_init(&own, batch, &fitted->hypothesis);
+    dig_likelihood_init(&other, batch, &by->hypothesis);
     dig_likelihood_weigh(&other, by->number);
     dig_likelihood_weigh_as(&own, &other);
     return dig_likelihood_means(&own, fitted->number);
+}
+
+void dig_fitted_features(const struct dig_soil *const soil, const struct dig_fitted *const fitted,
+                         const struct dig_measured *const dig, double feature[DIG_FEATURES])
+{
+    const struct dig_plain plain = dig_plain_of(soil, (size_t)dig->trajectory, fitted->number);
+    dig_forward_add(soil, &plain, &fitted->hypothesis, fitted->number, dig, feature, NULL);
+}
+
+void dig_fitted_whitened(const struct dig_whitened_digs *const batch,
+                         const struct dig_fitted *const fitted, const size_t group,
+                         const struct dig_measured *const dig, double y[DIG_FEATURES])
+{
+    double feature[DIG_FEATURES];
+    dig_fitted_features(batch->soil, fitted, dig, feature);
+    dig_whitened_digs_whiten(&batch->group[group], feature, y);
+}
+
+void dig_fitted_curve(const struct dig_soil *const soil, const struct dig_fitted *const fitted,
+                      const struct dig_measured *const dig,
+                      double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    const size_t        t      = (size_t)dig->trajectory;
+    const double *const number = fitted->number;
+    double              plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    dig_response_surface_curve(soil->surface, t, number, plain);
+    memcpy(curve, plain, sizeof plain);
+    for (size_t e = 0; e < fitted->hypothesis.effects; e++) {
+        const enum dig_effect_id effect = fitted->hypothesis.effect[e];
+        dig_soil_add_curve(soil, effect, t, number, number[DIG_AT_U(e)], number[DIG_AT_CONTRAST(e)],
+                           dig_soil_share(effect, dig), (const double(*)[DIG_CURVE_POINTS])plain,
+                           curve);
+    }
 }

@@ -31,12 +31,10 @@ static bool is_same(const size_t n, const double a[], const double b[])
 // NaN is never the same.
 void dig_likelihood_init(struct dig_likelihood *const          l,
                          const struct dig_whitened_digs *const batch,
-                         const struct dig_soil *const          soil,
                          const struct dig_hypothesis *const    hypothesis)
 {
-    assert(l != NULL && batch != NULL && soil != NULL && hypothesis != NULL);
+    assert(l != NULL && batch != NULL && hypothesis != NULL);
     l->batch      = batch;
-    l->soil       = soil;
     l->hypothesis = hypothesis;
     l->numbers    = DIG_AXES + 2 * hypothesis->effects;
     l->differs    = dig_hypothesis_differs(hypothesis);
@@ -60,7 +58,7 @@ static const struct dig_plain *plain_at(struct dig_likelihood *const l, const si
     if (!is_same(DIG_AXES, l->place, x)) {
         memcpy(l->place, x, sizeof l->place);
         for (size_t g = 0; g < l->batch->groups; g++) {
-            l->plain[g] = dig_plain_of(l->soil, l->batch->group[g].trajectory, x);
+            l->plain[g] = dig_plain_of(l->batch->soil, l->batch->group[g].trajectory, x);
         }
     }
     return &l->plain[group];
@@ -70,7 +68,7 @@ static void model_dig(struct dig_likelihood *const l, const size_t group,
                       const struct dig_measured *const dig, const double x[], double y[])
 {
     double feature[DIG_FEATURES];
-    dig_forward_add(l->soil, plain_at(l, group, x), l->hypothesis, x, dig, feature, NULL);
+    dig_forward_add(l->batch->soil, plain_at(l, group, x), l->hypothesis, x, dig, feature, NULL);
     dig_whitened_digs_whiten(&l->batch->group[group], feature, y);
 }
 
@@ -167,7 +165,7 @@ static double size2_of_plain(struct dig_likelihood *const l, const size_t g, con
     const struct dig_whitened_digs_group *const group     = &l->batch->group[g];
     const double *const                         amplitude = plain_at(l, g, x)->amplitude;
     *factor = dig_scatter_factor(l->batch->scatter, group->trajectory,
-                                 dig_soil_strength(l->soil->surface, x, amplitude));
+                                 dig_soil_strength(l->batch->soil->surface, x, amplitude));
     return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
 }
 
@@ -219,18 +217,17 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
         const double                                size2 = size2_of_plain(l, g, x, &factor);
         const struct dig_plain *const               at    = plain_at(l, g, x);
         double                                      added[DIG_FEATURES];
-        const double                                templates =
-            dig_forward_added(l->batch, g, l->soil, at, l->hypothesis, x, added);
-        error->even =
-            rough + group->repeats + group->added_noise + size2 * templates +
-            size2 * factor * dig_response_surface_noise(l->soil->surface, group->trajectory, x);
+        const double templates = dig_forward_added(l->batch, g, at, l->hypothesis, x, added);
+        error->even            = rough + group->repeats + group->added_noise + size2 * templates +
+                      size2 * factor *
+                          dig_response_surface_noise(l->batch->soil->surface, group->trajectory, x);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             error->size[0][f] = hypot(of_codes, unlisted) * at->feature[f];
             error->size[1][f] = unlike * added[f];
             error->size[2][f] = quick * unlisted * at->feature[f];
             error->size[3][f] = group->added_error[f];
         }
-        dig_shifts_fill(l->batch, g, l->soil, l->hypothesis, x, at, added, &error->shift);
+        dig_shifts_fill(l->batch, g, l->hypothesis, x, at, added, &error->shift);
         dig_common_error_build(group, error);
     }
     weigh_steps(l);

@@ -22,7 +22,6 @@
 /// The same numbers are asked about again and again: what was worked out of the last ones is kept.
 struct dig_likelihood {
     const struct dig_whitened_digs *batch;      // not owned
-    const struct dig_soil          *soil;       // not owned
     const struct dig_hypothesis    *hypothesis; // not owned
     size_t                          numbers;    // of the hypothesis
     size_t                          residuals;
@@ -47,7 +46,7 @@ struct dig_likelihood {
 };
 
 void dig_likelihood_init(struct dig_likelihood *l, const struct dig_whitened_digs *batch,
-                         const struct dig_soil *soil, const struct dig_hypothesis *hypothesis);
+                         const struct dig_hypothesis *hypothesis);
 
 /// Takes the covariance at the numbers x for all that follows.
 void dig_likelihood_weigh(struct dig_likelihood *l, const double x[]);

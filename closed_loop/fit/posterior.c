@@ -256,18 +256,18 @@ static void set_interval(struct cloud *const c, const size_t j, struct dig_fitte
 }
 
 enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const batch,
-                                        const struct dig_soil *const soil, const uint64_t seed,
-                                        struct dig_fitted *const fitted, double covariance[])
+                                        const uint64_t seed, struct dig_fitted *const fitted,
+                                        double covariance[])
 {
-    assert(batch != NULL && soil != NULL && fitted != NULL);
+    assert(batch != NULL && fitted != NULL);
     struct cloud *const c = calloc(1, sizeof *c);
     if (c == NULL) {
         return DIG_ENOMEM;
     }
-    dig_likelihood_init(&c->likelihood, batch, soil, &fitted->hypothesis);
+    dig_likelihood_init(&c->likelihood, batch, &fitted->hypothesis);
     dig_likelihood_weigh(&c->likelihood, fitted->number);
-    dig_hypothesis_bounds(soil, &fitted->hypothesis, c->low, c->high);
-    dig_shifts_common(batch, soil, &fitted->hypothesis, fitted->number, c->common);
+    dig_hypothesis_bounds(batch->soil, &fitted->hypothesis, c->low, c->high);
+    dig_shifts_common(batch, &fitted->hypothesis, fitted->number, c->common);
     c->reach = 2.4 / sqrt((double)c->likelihood.numbers);
     anneal(c, seed);
     for (size_t j = 0; j < c->likelihood.numbers; j++) {

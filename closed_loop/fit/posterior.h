@@ -16,8 +16,7 @@
 /// z of the batch's steps, [steps * steps], with what the numbers leave open, where covariance is
 /// not NULL. Some hundredths of a second. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *batch,
-                                                       const struct dig_soil *soil, uint64_t seed,
-                                                       struct dig_fitted *fitted,
-                                                       double             covariance[]);
+                                                       uint64_t seed, struct dig_fitted *fitted,
+                                                       double covariance[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_POSTERIOR_H

@@ -65,12 +65,11 @@ static struct dig_plain beside(const struct dig_soil *const soil, const size_t t
 }
 
 void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t group,
-                     const struct dig_soil *const       soil,
                      const struct dig_hypothesis *const hypothesis, const double number[],
                      const struct dig_plain *const plain, const double added[DIG_FEATURES],
                      struct dig_shifts *const shifts)
 {
-    assert(batch != NULL && soil != NULL && hypothesis != NULL && shifts != NULL);
+    assert(batch != NULL && hypothesis != NULL && shifts != NULL);
     const size_t trajectory = batch->group[group].trajectory;
     const size_t numbers    = DIG_AT_U(hypothesis->effects); // that the hypothesis has
     const bool   templated  = any_templated(hypothesis);
@@ -78,21 +77,21 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
     double       there[DIG_FEATURES];
     shifts->shifts = 0;
     for (size_t a = 0; a < DIG_AXES; a++) {
-        const struct dig_plain near =
-            beside(soil, trajectory, numbers, number, a, place_of(soil->surface->set, a), moved);
+        const struct dig_plain near = beside(batch->soil, trajectory, numbers, number, a,
+                                             place_of(batch->soil->surface->set, a), moved);
         put(near.feature, plain->feature, shifts);
     }
     for (size_t a = 0; templated && a < DIG_AXES; a++) {
         const struct dig_plain far =
-            beside(soil, trajectory, numbers, number, a, of_effect_place, moved);
-        (void)dig_forward_added(batch, group, soil, &far, hypothesis, moved, there);
+            beside(batch->soil, trajectory, numbers, number, a, of_effect_place, moved);
+        (void)dig_forward_added(batch, group, &far, hypothesis, moved, there);
         put(there, added, shifts);
     }
     for (size_t e = 0; e < hypothesis->effects; e++) {
         if (is_templated(hypothesis->effect[e])) {
             memcpy(moved, number, numbers * sizeof moved[0]);
             moved[DIG_AT_U(e)] *= 1.0 + of_magnitude;
-            (void)dig_forward_added(batch, group, soil, plain, hypothesis, moved, there);
+            (void)dig_forward_added(batch, group, plain, hypothesis, moved, there);
             put(there, added, shifts);
         }
     }
@@ -100,15 +99,15 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
 
 // What the effects add to the digs over the plain ones, rms of all trajectories.
 static double size_of_effects(const struct dig_whitened_digs *const batch,
-                              const struct dig_soil *const          soil,
                               const struct dig_hypothesis *const hypothesis, const double number[])
 {
     double more = 0.0;
     double all  = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_plain plain = dig_plain_of(soil, batch->group[g].trajectory, number);
-        double                 added[DIG_FEATURES];
-        (void)dig_forward_added(batch, g, soil, &plain, hypothesis, number, added);
+        const struct dig_plain plain =
+            dig_plain_of(batch->soil, batch->group[g].trajectory, number);
+        double added[DIG_FEATURES];
+        (void)dig_forward_added(batch, g, &plain, hypothesis, number, added);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             const double amplitude = plain.amplitude[f / DIG_FEATURE_BINS];
             more += pow(added[f] / amplitude, 2.0);
@@ -119,16 +118,15 @@ static double size_of_effects(const struct dig_whitened_digs *const batch,
 }
 
 void dig_shifts_common(const struct dig_whitened_digs *const batch,
-                       const struct dig_soil *const          soil,
                        const struct dig_hypothesis *const hypothesis, const double number[],
                        double sigma[DIG_HYPOTHESIS_NUMBERS])
 {
-    assert(batch != NULL && soil != NULL && hypothesis != NULL && sigma != NULL);
+    assert(batch != NULL && hypothesis != NULL && sigma != NULL);
     memset(sigma, 0, DIG_HYPOTHESIS_NUMBERS * sizeof sigma[0]);
     if (!any_templated(hypothesis)) {
         return;
     }
-    const double size = size_of_effects(batch, soil, hypothesis, number);
+    const double size = size_of_effects(batch, hypothesis, number);
     for (size_t a = 0; a < DIG_AXES; a++) {
         sigma[a] = common_place * size;
     }

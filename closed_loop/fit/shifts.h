@@ -18,13 +18,13 @@ struct dig_shifts {
 /// The shifts of a group's mean dig, each of a trajectory's own. plain: at number; added: what the
 /// effects add there.
 void dig_shifts_fill(const struct dig_whitened_digs *batch, size_t group,
-                     const struct dig_soil *soil, const struct dig_hypothesis *hypothesis,
-                     const double number[], const struct dig_plain *plain,
-                     const double added[DIG_FEATURES], struct dig_shifts *shifts);
+                     const struct dig_hypothesis *hypothesis, const double number[],
+                     const struct dig_plain *plain, const double added[DIG_FEATURES],
+                     struct dig_shifts *shifts);
 
 /// 1 sigma of what all trajectories share: beside an effect of the soil, of a gravel's place and of
 /// the effects' u. A fit takes it for another gravel, so that nothing shows it.
-void dig_shifts_common(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+void dig_shifts_common(const struct dig_whitened_digs *batch,
                        const struct dig_hypothesis *hypothesis, const double number[],
                        double sigma[DIG_HYPOTHESIS_NUMBERS]);
 

@@ -95,11 +95,11 @@ static double measure_size(const struct dig_whitened_digs *const batch, const si
         return 1.0;
     }
     // The whole dig's amplitude follows from the part that was measured as the table's does.
-    const struct dig_gravel gravel = dig_response_surface_gravel(batch->surface, place);
+    const struct dig_gravel gravel = dig_response_surface_gravel(batch->soil->surface, place);
     double                  table[DIG_FEATURES];
     double                  whole[DIG_FORCE_CHANNELS];
     double                  part[DIG_FORCE_CHANNELS];
-    dig_response_surface_features(batch->surface, group->trajectory, place, table, whole);
+    dig_response_surface_features(batch->soil->surface, group->trajectory, place, table, whole);
     dig_features_amplitude(table, mask, part);
     const double strength = log(whole[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
     const double factor   = sqrt(dig_scatter_factor(batch->scatter, group->trajectory, strength));
@@ -125,9 +125,10 @@ static enum dig_status open_depth(const struct dig_whitened_digs *const batch, c
         return DIG_OK;
     }
     const struct dig_gravel gravel =
-        dig_response_surface_gravel(batch->surface, place != NULL ? place : change);
-    const enum dig_status status = dig_depth_change(batch->surface->set, batch->group[g].trajectory,
-                                                    place != NULL ? &gravel : NULL, change);
+        dig_response_surface_gravel(batch->soil->surface, place != NULL ? place : change);
+    const enum dig_status status =
+        dig_depth_change(batch->soil->surface->set, batch->group[g].trajectory,
+                         place != NULL ? &gravel : NULL, change);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         change[f] *= share;
     }
@@ -281,21 +282,21 @@ static void fill_shared(struct dig_whitened_digs *const batch)
     }
 }
 
-enum dig_status dig_whitened_digs_make(const struct dig_response_surface *const surface,
+enum dig_status dig_whitened_digs_make(const struct dig_soil *const    soil,
                                        const struct dig_scatter *const scatter, const size_t digs,
                                        const struct dig_measured measured[], const bool take[],
                                        const double                    place[DIG_AXES],
                                        struct dig_whitened_digs *const batch)
 {
-    assert(surface != NULL && scatter != NULL && measured != NULL && batch != NULL);
+    assert(soil != NULL && scatter != NULL && measured != NULL && batch != NULL);
     memset(batch, 0, sizeof *batch);
-    batch->surface                                 = surface;
+    batch->soil                                    = soil;
     batch->scatter                                 = scatter;
     batch->measured                                = measured;
     double feature[DIG_MEASURED_MAX][DIG_FEATURES] = { { 0.0 } };
     for (size_t i = 0; i < digs && batch->digs < DIG_MEASURED_MAX; i++) {
         const size_t t = (size_t)measured[i].trajectory;
-        if (!take[i] || !surface->known[t]) {
+        if (!take[i] || !soil->surface->known[t]) {
             continue;
         }
         struct dig_whitened_digs_dig *const dig = &batch->dig[batch->digs];

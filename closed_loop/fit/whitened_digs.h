@@ -8,9 +8,7 @@
 #ifndef DIG_CLOSED_LOOP_FIT_WHITENED_DIGS_H
 #define DIG_CLOSED_LOOP_FIT_WHITENED_DIGS_H
 
-#include "closed_loop/model/response_surface.h"
-#include "closed_loop/model/scatter.h"
-#include "closed_loop/recordings/measured.h"
+#include "closed_loop/model/soil.h"
 
 struct dig_steps; // what is open beside the soil: closed_loop/fit/steps.h
 
@@ -38,22 +36,21 @@ struct dig_whitened_digs_dig {
 };
 
 struct dig_whitened_digs {
-    const struct dig_response_surface *surface;  // not owned
-    const struct dig_scatter          *scatter;  // not owned
-    const struct dig_measured         *measured; // not owned
-    const struct dig_steps            *steps;    // not owned; NULL: none
-    size_t                             groups;
-    struct dig_whitened_digs_group     group[DIG_TRAJECTORY_MAX];
-    size_t                             digs;
-    struct dig_whitened_digs_dig       dig[DIG_MEASURED_MAX];
+    const struct dig_soil         *soil;     // not owned
+    const struct dig_scatter      *scatter;  // not owned
+    const struct dig_measured     *measured; // not owned
+    const struct dig_steps        *steps;    // not owned; NULL: none
+    size_t                         groups;
+    struct dig_whitened_digs_group group[DIG_TRAJECTORY_MAX];
+    size_t                         digs;
+    struct dig_whitened_digs_dig   dig[DIG_MEASURED_MAX];
 };
 
 /// Takes the digs that take[] allows, machine effects off. place: about which gravel it is (NULL:
 /// not known yet), for the scatter's factor. DIG_ENOMATCH: no dig, or a trajectory of which not
 /// half a channel was measured by all digs.
 DIG_MUST_CHECK enum dig_status
-dig_whitened_digs_make(const struct dig_response_surface *surface,
-                       const struct dig_scatter *scatter, size_t digs,
+dig_whitened_digs_make(const struct dig_soil *soil, const struct dig_scatter *scatter, size_t digs,
                        const struct dig_measured measured[], const bool take[],
                        const double place[DIG_AXES], struct dig_whitened_digs *batch);
 

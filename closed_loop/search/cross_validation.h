@@ -10,7 +10,6 @@
 /// the effects tell of a dig what they were not fitted to. A dig without which the effects cannot
 /// be fitted counts 0. Milliseconds a dig. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_cross_validation_gain(const struct dig_whitened_digs *batch,
-                                                         const struct dig_soil          *soil,
                                                          const struct dig_fitted        *plain,
                                                          const struct dig_fitted        *chosen,
                                                          double                         *gain);

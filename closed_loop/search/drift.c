@@ -12,7 +12,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 // A constant, the line's and the parabola's term, and one number for every trajectory.
 enum { POLYNOMIAL = 3, UNKNOWNS = POLYNOMIAL + DIG_TRAJECTORY_MAX };
@@ -46,24 +45,22 @@ static double worn(const struct dig_whitened_digs *const batch, const double sha
     return (1.0 + share * (double)batch->measured[dig->measured].order) / mean;
 }
 
-static void measure(const struct dig_whitened_digs *const batch, const struct dig_soil *const soil,
+static void measure(const struct dig_whitened_digs *const batch,
                     const struct dig_fitted *const fitted, const size_t wear,
                     struct sizes *const sizes)
 {
-    double fresh[DIG_HYPOTHESIS_NUMBERS];
-    double first = INFINITY;
-    double last  = -INFINITY;
-    memcpy(fresh, fitted->number, sizeof fresh);
-    fresh[DIG_AT_U(wear)] = 0.0;
-    sizes->digs           = batch->digs;
+    struct dig_fitted fresh      = *fitted;
+    double            first      = INFINITY;
+    double            last       = -INFINITY;
+    fresh.number[DIG_AT_U(wear)] = 0.0;
+    sizes->digs                  = batch->digs;
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
         const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
         double                                      model[DIG_FEATURES];
         double                                      both = 0.0;
         double                                      own  = 0.0;
-        dig_hypothesis_whitened(soil, &fitted->hypothesis, fresh, group,
-                                &batch->measured[dig->measured], model);
+        dig_fitted_whitened(batch, &fresh, dig->group, &batch->measured[dig->measured], model);
         for (size_t k = 0; k < group->features; k++) {
             both += dig->y[k] * model[k];
             own += model[k] * model[k];
@@ -117,15 +114,15 @@ static double bend(const struct sizes *const sizes, const size_t groups)
 }
 
 double dig_drift_bend(const struct dig_whitened_digs *const batch,
-                      const struct dig_soil *const soil, const struct dig_fitted *const fitted)
+                      const struct dig_fitted *const        fitted)
 {
-    assert(batch != NULL && soil != NULL && fitted != NULL);
+    assert(batch != NULL && fitted != NULL);
     const struct dig_hypothesis *const by = &fitted->hypothesis;
     const size_t wear  = dig_effect_place(by->effects, by->effect, DIG_EFFECT_WEAR);
     struct sizes sizes = { .digs = 0 };
     if (wear == by->effects || batch->digs < least_digs) {
         return 0.0;
     }
-    measure(batch, soil, fitted, wear, &sizes);
+    measure(batch, fitted, wear, &sizes);
     return bend(&sizes, batch->groups);
 }

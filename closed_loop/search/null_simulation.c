@@ -10,11 +10,10 @@
 enum { AT_A_TIME = 25 }; // draws after which is asked whether more would change the answer
 
 double dig_null_simulation_left(const struct dig_whitened_digs *const batch,
-                                const struct dig_soil *const          soil,
                                 const struct dig_fitted *const        fitted)
 {
     const double squares = dig_hypothesis_differs(&fitted->hypothesis)
-                               ? dig_hypothesis_squares(batch, soil, fitted, fitted)
+                               ? dig_hypothesis_squares(batch, fitted, fitted)
                                : fitted->squares - dig_whitened_digs_about(batch);
     return dig_whitened_digs_misfit_of_means(batch, squares);
 }
@@ -22,7 +21,7 @@ double dig_null_simulation_left(const struct dig_whitened_digs *const batch,
 // Fits base with one effect more. What an effect adds need not grow evenly with it, so that a fit
 // may end near none: several magnitudes are started from.
 static void fit_rival(const struct dig_whitened_digs *const batch,
-                      const struct dig_soil *const soil, const struct dig_hypothesis *const base,
+                      const struct dig_hypothesis *const    base,
                       const struct dig_hypothesis *const rival, const struct dig_fitted *const from,
                       const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
@@ -37,12 +36,13 @@ static void fit_rival(const struct dig_whitened_digs *const batch,
         memcpy(at, from->number, sizeof at);
         if (rival->effects > base->effects) {
             at[last + 1] = 1.0;
-            at[last]     = starts[s] * (starts[s] > 0.0 ? soil->high[effect] : -soil->low[effect]);
+            at[last]     = starts[s] *
+                       (starts[s] > 0.0 ? batch->soil->high[effect] : -batch->soil->low[effect]);
         }
         if (s > 0 && fabs(at[last]) <= 0.0) {
             continue;
         }
-        dig_hypothesis_fit(batch, soil, rival, at, care, &tried);
+        dig_hypothesis_fit(batch, rival, at, care, &tried);
         if (tried.misfit < best.misfit) {
             best = tried;
         }
@@ -51,20 +51,19 @@ static void fit_rival(const struct dig_whitened_digs *const batch,
 }
 
 void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
-                             const struct dig_soil *const          soil,
                              const struct dig_hypothesis *const base, const size_t rivals,
                              const struct dig_hypothesis rival[], const double start[],
                              const enum dig_fit_care care, struct dig_fitted fitted[],
                              struct dig_statistic *const statistic)
 {
     assert(rivals <= DIG_RIVALS_MAX);
-    dig_hypothesis_fit(batch, soil, base, start, care, &fitted[0]);
+    dig_hypothesis_fit(batch, base, start, care, &fitted[0]);
     statistic->about  = dig_whitened_digs_about(batch);
-    statistic->misfit = dig_null_simulation_left(batch, soil, &fitted[0]);
+    statistic->misfit = dig_null_simulation_left(batch, &fitted[0]);
     statistic->gain   = 0.0;
     statistic->best   = rivals;
     for (size_t i = 0; i < rivals; i++) {
-        fit_rival(batch, soil, base, &rival[i], &fitted[0], care, &fitted[1 + i]);
+        fit_rival(batch, base, &rival[i], &fitted[0], care, &fitted[1 + i]);
         const double gain = fitted[0].misfit - fitted[1 + i].misfit;
         if (gain > statistic->gain) {
             statistic->gain = gain;
@@ -129,7 +128,6 @@ static void draw_scatter(const struct dig_whitened_digs *const batch, const size
 }
 
 void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
-                              const struct dig_soil *const          soil,
                               const struct dig_fitted *const fitted, uint64_t *const seed,
                               struct dig_whitened_digs *const drawn)
 {
@@ -138,7 +136,7 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
     double                  size[DIG_TRAJECTORY_MAX];
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
     double                  z[DIG_STEPS_MAX] = { 0.0 };
-    dig_hypothesis_errors(batch, soil, fitted, error);
+    dig_hypothesis_errors(batch, fitted, error);
     for (size_t k = 0; batch->steps != NULL && k < batch->steps->steps; k++) {
         z[k] = batch->steps->middle[k] + dig_chance_normal(seed);
     }
@@ -156,8 +154,7 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
         const size_t g = batch->dig[i].group;
         double       model[DIG_FEATURES];
         double       own[DIG_FEATURES];
-        dig_hypothesis_whitened(soil, &fitted->hypothesis, fitted->number, &batch->group[g],
-                                &batch->measured[batch->dig[i].measured], model);
+        dig_fitted_whitened(batch, fitted, g, &batch->measured[batch->dig[i].measured], model);
         draw_scatter(batch, g, seed, own);
         for (size_t k = 0; k < batch->group[g].features; k++) {
             drawn->dig[i].y[k] = model[k] + common[g][k] + size[g] * own[k];
@@ -180,7 +177,6 @@ static bool is_answered(const struct dig_null_question *const   asked,
 }
 
 enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
-                                         const struct dig_soil *const          soil,
                                          const struct dig_fitted *const fitted, const size_t rivals,
                                          const struct dig_hypothesis rival[], const size_t draws,
                                          const struct dig_null_question *const asked,
@@ -200,8 +196,8 @@ enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const b
     double                     squares[3] = { 0.0 };
     while (made.draws < draws && !is_answered(asked, &made)) {
         struct dig_statistic s;
-        dig_null_simulation_digs(batch, soil, fitted, seed, drawn);
-        dig_null_simulation_fit(drawn, soil, &fitted->hypothesis, rivals, rival, fitted->number,
+        dig_null_simulation_digs(batch, fitted, seed, drawn);
+        dig_null_simulation_fit(drawn, &fitted->hypothesis, rivals, rival, fitted->number,
                                 DIG_FIT_BARE, again, &s);
         const double value[3] = { s.misfit, s.about, s.gain };
         made.draws++;

@@ -35,29 +35,28 @@ struct dig_null_question {
 
 /// Fits a batch by base and by base with each rival added, from the numbers given. Writes the
 /// fits: fitted[0] by base, fitted[1 + i] by rival i.
-void dig_null_simulation_fit(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+void dig_null_simulation_fit(const struct dig_whitened_digs *batch,
                              const struct dig_hypothesis *base, size_t rivals,
                              const struct dig_hypothesis rival[], const double start[],
                              enum dig_fit_care care, struct dig_fitted fitted[],
                              struct dig_statistic *statistic);
 
 /// Draws the digs of one campaign from fitted into drawn, which is a copy of batch.
-void dig_null_simulation_digs(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
+void dig_null_simulation_digs(const struct dig_whitened_digs *batch,
                               const struct dig_fitted *fitted, uint64_t *seed,
                               struct dig_whitened_digs *drawn);
 
 /// Draws from fitted and fits again, draws times, or fewer where they answer what is asked (may be
 /// NULL): the chance is far from the level. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
-dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
-                         const struct dig_fitted *fitted, size_t rivals,
-                         const struct dig_hypothesis rival[], size_t draws,
+dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
+                         size_t rivals, const struct dig_hypothesis rival[], size_t draws,
                          const struct dig_null_question *asked, uint64_t *seed,
                          struct dig_null_simulation *null);
 
 /// What a fit leaves of the means: a statistic's misfit.
-double dig_null_simulation_left(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
-                                const struct dig_fitted *fitted);
+double dig_null_simulation_left(const struct dig_whitened_digs *batch,
+                                const struct dig_fitted        *fitted);
 
 /// Chance of a statistic (index 0 misfit, 1 about, 2 gain) this large.
 double dig_null_simulation_p(const struct dig_null_simulation *null, size_t index, double value);

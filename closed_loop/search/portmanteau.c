@@ -29,8 +29,7 @@ double dig_portmanteau(const size_t n, const double z[])
 
 // Q of every dig; returns their mean.
 static double all_digs(const struct dig_whitened_digs *const batch,
-                       const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                       double q[DIG_MEASURED_MAX])
+                       const struct dig_fitted *const fitted, double q[DIG_MEASURED_MAX])
 {
     double mean = 0.0;
     for (size_t i = 0; i < batch->digs; i++) {
@@ -38,8 +37,7 @@ static double all_digs(const struct dig_whitened_digs *const batch,
         const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
         double                                      model[DIG_FEATURES];
         double                                      z[DIG_FEATURES];
-        dig_hypothesis_whitened(soil, &fitted->hypothesis, fitted->number, group,
-                                &batch->measured[dig->measured], model);
+        dig_fitted_whitened(batch, fitted, dig->group, &batch->measured[dig->measured], model);
         q[i]         = 0.0;
         size_t first = 0;
         for (size_t k = 0; k < group->features; k++) {
@@ -69,7 +67,6 @@ static void draw_digs(const size_t digs, const double q[], uint64_t *const seed,
 }
 
 enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *const batch,
-                                      const struct dig_soil *const          soil,
                                       const struct dig_fitted *const fitted, const size_t draws,
                                       uint64_t seed, struct dig_whiteness *const whiteness)
 {
@@ -80,15 +77,15 @@ enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *const batc
     }
     double               q[DIG_MEASURED_MAX];
     struct dig_whiteness made = { .digs = batch->digs };
-    made.statistic            = all_digs(batch, soil, fitted, q);
+    made.statistic            = all_digs(batch, fitted, q);
     draw_digs(batch->digs, q, &seed, &made);
     double as_large = 0.0;
     *drawn          = *batch;
     for (size_t d = 0; d < draws; d++) {
         struct dig_fitted again;
-        dig_null_simulation_digs(batch, soil, fitted, &seed, drawn);
-        dig_hypothesis_fit(drawn, soil, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
-        const double mean = all_digs(drawn, soil, &again, q);
+        dig_null_simulation_digs(batch, fitted, &seed, drawn);
+        dig_hypothesis_fit(drawn, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
+        const double mean = all_digs(drawn, &again, q);
         made.expected += mean / (double)draws;
         as_large += mean >= made.statistic ? 1.0 : 0.0;
     }

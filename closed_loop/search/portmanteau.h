@@ -33,7 +33,6 @@ double dig_portmanteau(size_t n, const double z[]);
 /// Of a batch by a fitted hypothesis, against draws draws from it. Writes on success only.
 /// DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *batch,
-                                                     const struct dig_soil          *soil,
                                                      const struct dig_fitted *fitted, size_t draws,
                                                      uint64_t              seed,
                                                      struct dig_whiteness *whiteness);

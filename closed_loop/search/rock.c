@@ -44,7 +44,6 @@ struct place {
 
 struct room {
     const struct dig_whitened_digs *batch;
-    const struct dig_soil          *soil;
     struct hump                     hump[DIG_TRAJECTORY_MAX];
     struct dig_whitened_digs        without; // the digs less the hump
 };
@@ -53,11 +52,12 @@ static void describe(const struct room *const r, const size_t g, struct hump *co
 {
     static const double               middle[DIG_AXES]                           = { 0.0 };
     static const double               none[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
-    const struct dig_curve_set *const set  = r->soil->surface->set;
+    const struct dig_curve_set *const set  = r->batch->soil->surface->set;
     const size_t                      t    = r->batch->group[g].trajectory;
     double                            most = 0.0;
     memset(hump, 0, sizeof *hump);
-    dig_soil_add_curve(r->soil, DIG_EFFECT_OBSTACLE, t, middle, 1.0, 1.0, 1.0, none, hump->more);
+    dig_soil_add_curve(r->batch->soil, DIG_EFFECT_OBSTACLE, t, middle, 1.0, 1.0, 1.0, none,
+                       hump->more);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double          progress = (double)k / (DIG_CURVE_POINTS - 1);
         const struct dig_pose pose =
@@ -124,8 +124,7 @@ static void rest_of(const struct room *const r, const struct dig_fitted *const f
                     const struct dig_whitened_digs *const batch, const size_t g,
                     double rest[DIG_FEATURES])
 {
-    dig_hypothesis_whitened(r->soil, &fitted->hypothesis, fitted->number, &batch->group[g],
-                            dig_whitened_digs_first(r->batch, g), rest);
+    dig_fitted_whitened(batch, fitted, g, dig_whitened_digs_first(r->batch, g), rest);
     for (size_t k = 0; k < batch->group[g].features; k++) {
         rest[k] = batch->group[g].mean[k] - rest[k];
     }
@@ -137,7 +136,7 @@ static void fit_factors(const struct room *const r, const struct place *const p,
                         double factor[])
 {
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
-    dig_hypothesis_errors(r->batch, r->soil, fitted, error);
+    dig_hypothesis_errors(r->batch, fitted, error);
     for (size_t g = 0; g < r->batch->groups; g++) {
         const struct dig_whitened_digs_group *const group = &r->batch->group[g];
         double                                      rest[DIG_FEATURES];
@@ -163,8 +162,8 @@ static void judge(const struct room *const r, const struct place *const p,
     struct dig_fitted *const f = &rock->plain;
     struct dig_common_error  own[DIG_TRAJECTORY_MAX];
     struct dig_common_error  other[DIG_TRAJECTORY_MAX];
-    dig_hypothesis_errors(&r->without, r->soil, f, own);
-    dig_hypothesis_errors(r->batch, r->soil, plain, other);
+    dig_hypothesis_errors(&r->without, f, own);
+    dig_hypothesis_errors(r->batch, plain, other);
     f->squares    = 0.0;
     f->misfit     = 0.0;
     rock->squares = 0.0;
@@ -202,7 +201,7 @@ static void fit_place(struct room *const r, const struct place *const p,
         take_off(r, p, rock->factor);
         double from[DIG_HYPOTHESIS_NUMBERS];
         memcpy(from, rock->plain.number, sizeof from);
-        dig_hypothesis_fit(&r->without, r->soil, &plain->hypothesis, from,
+        dig_hypothesis_fit(&r->without, &plain->hypothesis, from,
                            round == 0 ? DIG_FIT_THOROUGH : DIG_FIT_BARE, &rock->plain);
     }
     judge(r, p, plain, rock);
@@ -211,7 +210,7 @@ static void fit_place(struct room *const r, const struct place *const p,
 // From the first place that is not where the tooth goes in to the last that some dig reaches.
 static void find_range(const struct room *const r, double *const first_m, double *const last_m)
 {
-    const double tooth_m = r->soil->surface->set->tooth_m;
+    const double tooth_m = r->batch->soil->surface->set->tooth_m;
     *first_m             = INFINITY;
     *last_m              = -INFINITY;
     for (size_t g = 0; g < r->batch->groups; g++) {
@@ -230,7 +229,7 @@ static void fit_all(struct room *const r, struct place place[PLACES_MAX],
     double misfit[PLACES_MAX];
     size_t n = 0;
     find_range(r, &first_m, &last_m);
-    const double tooth_m = r->soil->surface->set->tooth_m;
+    const double tooth_m = r->batch->soil->surface->set->tooth_m;
     const double step_m  = fmax(step * tooth_m, (last_m - first_m) / (PLACES_MAX - 1));
     for (; n < PLACES_MAX && first_m + step_m * (double)n <= last_m; n++) {
         put_place(r, first_m + step_m * (double)n, &place[n]);
@@ -259,12 +258,11 @@ static void fit_all(struct room *const r, struct place place[PLACES_MAX],
 }
 
 enum dig_status dig_rock_fit(const struct dig_whitened_digs *const batch,
-                             const struct dig_soil *const          soil,
                              const struct dig_fitted *const plain, struct dig_rock *const rock)
 {
-    assert(batch != NULL && soil != NULL && plain != NULL && rock != NULL);
+    assert(batch != NULL && plain != NULL && rock != NULL);
     *rock = (struct dig_rock){ .known = false };
-    if (!dig_hypothesis_possible(batch, soil, DIG_EFFECT_OBSTACLE)) {
+    if (!dig_hypothesis_possible(batch, DIG_EFFECT_OBSTACLE)) {
         return DIG_OK;
     }
     struct room *const  r      = malloc(sizeof *r);
@@ -272,7 +270,6 @@ enum dig_status dig_rock_fit(const struct dig_whitened_digs *const batch,
     enum dig_status     status = DIG_ENOMEM;
     if (r != NULL && place != NULL) {
         r->batch   = batch;
-        r->soil    = soil;
         r->without = *batch;
         for (size_t g = 0; g < batch->groups; g++) {
             describe(r, g, &r->hump[g]);

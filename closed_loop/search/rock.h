@@ -25,7 +25,6 @@ struct dig_rock {
 
 /// Fits it, starting from the plain hypothesis' fit. A tenth of a second. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_rock_fit(const struct dig_whitened_digs *batch,
-                                            const struct dig_soil          *soil,
                                             const struct dig_fitted *plain, struct dig_rock *rock);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_ROCK_H

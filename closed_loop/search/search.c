@@ -16,15 +16,14 @@ static const double rarer = 0.01;
 static const double lead = 3.0;
 
 size_t dig_search_rivals(const struct dig_whitened_digs *const batch,
-                         const struct dig_soil *const          soil,
                          struct dig_hypothesis                 single[DIG_RIVALS_MAX])
 {
-    assert(batch != NULL && soil != NULL && single != NULL);
+    assert(batch != NULL && single != NULL);
     size_t rivals = 0;
     for (int e = 0; e < DIG_EFFECTS; e++) {
         const enum dig_effect_id effect = (enum dig_effect_id)e;
         if (!dig_effect_is_of_machine(effect) && effect != DIG_EFFECT_UNLISTED &&
-            rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(batch, soil, effect)) {
+            rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(batch, effect)) {
             single[rivals++] = (struct dig_hypothesis){ .effects = 1, .effect = { effect } };
         }
     }
@@ -38,16 +37,15 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     static const struct dig_hypothesis outside = { .effects = 0, .outside = true };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_fitted                  fitted[DIG_RIVALS_MAX + 1];
-    dig_null_simulation_fit(c->batch, c->soil, &plain, c->s->rivals, c->single, middle,
-                            DIG_FIT_THOROUGH, fitted, statistic);
+    dig_null_simulation_fit(c->batch, &plain, c->s->rivals, c->single, middle, DIG_FIT_THOROUGH,
+                            fitted, statistic);
     c->s->plain = fitted[0];
     for (size_t i = 0; i < c->s->rivals; i++) {
         c->s->rival[i]        = fitted[1 + i];
         c->s->log_evidence[i] = dig_search_evidence(c, &fitted[1 + i], 0);
     }
-    dig_hypothesis_fit(c->batch, c->soil, &outside, fitted[0].number, DIG_FIT_THOROUGH,
-                       &c->s->beyond);
-    dig_hypothesis_fit_unlisted(c->batch, c->soil, &fitted[0], &c->s->nameless);
+    dig_hypothesis_fit(c->batch, &outside, fitted[0].number, DIG_FIT_THOROUGH, &c->s->beyond);
+    dig_hypothesis_fit_unlisted(c->batch, &fitted[0], &c->s->nameless);
 }
 
 // The digs differ as an effect says that differs from dig to dig: no mere scatter.
@@ -93,8 +91,8 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
     *drawn = *c->batch;
     fit_all(c, &statistic);
     const struct dig_fitted plain = c->s->plain;
-    enum dig_status status = dig_null_simulation_draw(drawn, c->soil, &plain, 0, NULL, c->draws,
-                                                      NULL, &c->seed, &c->plain_null);
+    enum dig_status         status =
+        dig_null_simulation_draw(drawn, &plain, 0, NULL, c->draws, NULL, &c->seed, &c->plain_null);
     if (status == DIG_OK) {
         allow_for_scatter(c, &statistic);
         const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
@@ -102,8 +100,8 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
         if (!(c->s->p_complete < c->false_alarm)) {
             const struct dig_null_question asked = { statistic.gain, c->false_alarm };
             struct dig_null_simulation     gains;
-            status = dig_null_simulation_draw(drawn, c->soil, &plain, c->s->rivals, c->single,
-                                              c->draws, &asked, &seed, &gains);
+            status = dig_null_simulation_draw(drawn, &plain, c->s->rivals, c->single, c->draws,
+                                              &asked, &seed, &gains);
             c->s->p_complete =
                 status == DIG_OK
                     ? chance_of_either(fmin(p, dig_null_simulation_p(&gains, 2, statistic.gain)))
@@ -113,7 +111,7 @@ static enum dig_status decide_whether(struct dig_search_work *const c)
     free(drawn);
     c->s->significant = c->s->p_complete < c->false_alarm;
     for (size_t i = 0; i < c->s->rivals; i++) {
-        const double left  = dig_null_simulation_left(c->batch, c->soil, &c->s->rival[i]);
+        const double left  = dig_null_simulation_left(c->batch, &c->s->rival[i]);
         c->s->rival_fit[i] = dig_null_simulation_p(&c->plain_null, 0, left);
     }
     return status;
@@ -148,7 +146,7 @@ static enum dig_status bootstrap(struct dig_search_work *const c, const size_t t
     for (size_t i = 0; i < times; i++) {
         struct dig_statistic statistic;
         resample(c->batch, &c->seed, drawn);
-        dig_null_simulation_fit(drawn, c->soil, &c->s->plain.hypothesis, c->s->rivals, c->single,
+        dig_null_simulation_fit(drawn, &c->s->plain.hypothesis, c->s->rivals, c->single,
                                 c->s->plain.number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < c->s->rivals) {
             c->s->inclusion[statistic.best] += 1.0 / (double)times;
@@ -158,23 +156,19 @@ static enum dig_status bootstrap(struct dig_search_work *const c, const size_t t
     return DIG_OK;
 }
 
-enum dig_status dig_search_run(struct dig_whitened_digs *const batch,
-                               const struct dig_soil *const soil, const double false_alarm,
+enum dig_status dig_search_run(struct dig_whitened_digs *const batch, const double false_alarm,
                                const size_t draws, const uint64_t seed,
                                struct dig_search *const search)
 {
-    assert(batch != NULL && soil != NULL && search != NULL && draws >= 4);
+    assert(batch != NULL && search != NULL && draws >= 4);
     memset(search, 0, sizeof *search);
     search->unnamed          = 1.0;
-    struct dig_search_work c = { .batch       = batch,
-                                 .soil        = soil,
-                                 .false_alarm = false_alarm,
-                                 .draws       = draws,
-                                 .seed        = seed,
-                                 .s           = search };
-    search->rivals           = dig_search_rivals(batch, soil, c.single);
-    enum dig_status status   = decide_whether(&c);
-    search->chosen           = search->plain;
+    struct dig_search_work c = {
+        .batch = batch, .false_alarm = false_alarm, .draws = draws, .seed = seed, .s = search
+    };
+    search->rivals         = dig_search_rivals(batch, c.single);
+    enum dig_status status = decide_whether(&c);
+    search->chosen         = search->plain;
     if (status != DIG_OK || !search->significant) {
         return status;
     }

@@ -49,8 +49,8 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
         struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
         struct dig_statistic  statistic;
         const size_t          n = list_additions(c, &c->single[first], added);
-        dig_null_simulation_fit(c->batch, c->soil, &c->single[first], n, added,
-                                c->s->rival[first].number, DIG_FIT_BARE, fitted, &statistic);
+        dig_null_simulation_fit(c->batch, &c->single[first], n, added, c->s->rival[first].number,
+                                DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {
             best  = fitted[1 + statistic.best].misfit;
             *pair = fitted[1 + statistic.best];
@@ -66,7 +66,7 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
 static bool is_believable(const struct dig_search_work *const c, const double evidence)
 {
     struct dig_fitted with;
-    dig_hypothesis_fit_unlisted(c->batch, c->soil, &c->s->chosen, &with);
+    dig_hypothesis_fit_unlisted(c->batch, &c->s->chosen, &with);
     return evidence >= DIG_SEARCH_TOLD_APART &&
            evidence >= dig_search_evidence(c, &c->s->nameless, 0) + least_lead &&
            evidence >= dig_search_evidence(c, &with, 0) - DIG_SEARCH_TOLD_APART;
@@ -78,7 +78,7 @@ static bool drifts_otherwise(struct dig_search_work *const c)
 {
     struct dig_whitened_digs settled = *c->batch;
     dig_steps_settle(&settled, c->s->chosen.z);
-    const bool does = fabs(dig_drift_bend(&settled, c->soil, &c->s->chosen)) > most_bent;
+    const bool does = fabs(dig_drift_bend(&settled, &c->s->chosen)) > most_bent;
     if (does) {
         (void)snprintf(c->s->without_name.depends_on, sizeof c->s->without_name.depends_on,
                        "the order of the digs");
@@ -98,7 +98,7 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
             struct dig_fitted again;
             start[DIG_AT_U(0)]        = pair->number[DIG_AT_U(e)];
             start[DIG_AT_CONTRAST(0)] = pair->number[DIG_AT_CONTRAST(e)];
-            dig_hypothesis_fit(c->batch, c->soil, &c->single[best], start, DIG_FIT_BARE, &again);
+            dig_hypothesis_fit(c->batch, &c->single[best], start, DIG_FIT_BARE, &again);
             if (again.misfit < c->s->rival[best].misfit) {
                 c->s->rival[best]        = again;
                 c->s->log_evidence[best] = dig_search_evidence(c, &again, 0);
@@ -120,7 +120,7 @@ static enum dig_status choose_pair(struct dig_search_work *const c, const size_t
         return DIG_OK;
     }
     const enum dig_status status =
-        dig_cross_validation_gain(c->batch, c->soil, &c->s->rival[best], pair, &gain);
+        dig_cross_validation_gain(c->batch, &c->s->rival[best], pair, &gain);
     c->s->chosen = gain > 0.0 ? *pair : c->s->rival[best];
     return status;
 }
@@ -142,15 +142,14 @@ static enum dig_status look_for_rock(struct dig_search_work *const         c,
                                      const struct dig_whitened_digs *const settled)
 {
     struct dig_rock *const rock   = &c->s->rock;
-    const enum dig_status  status = dig_rock_fit(settled, c->soil, &c->s->plain, rock);
+    const enum dig_status  status = dig_rock_fit(settled, &c->s->plain, rock);
     if (status != DIG_OK || !rock->known) {
         return status;
     }
     struct dig_fitted plain;
     memcpy(rock->plain.z, c->s->plain.z, sizeof rock->plain.z);
-    dig_hypothesis_fit(settled, c->soil, &c->s->plain.hypothesis, c->s->plain.number, DIG_FIT_BARE,
-                       &plain);
-    const double before = dig_null_simulation_left(settled, c->soil, &plain);
+    dig_hypothesis_fit(settled, &c->s->plain.hypothesis, c->s->plain.number, DIG_FIT_BARE, &plain);
+    const double before = dig_null_simulation_left(settled, &plain);
     const double after  = dig_whitened_digs_misfit_of_means(settled, rock->squares);
     rock->log_evidence  = dig_search_evidence(c, &rock->plain, rock->numbers) +
                          0.5 * (plain.misfit - c->s->plain.misfit);
@@ -170,8 +169,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
 {
     struct dig_whitened_digs settled = *c->batch;
     dig_steps_settle(&settled, c->s->plain.z);
-    enum dig_status status =
-        dig_unlisted_find(&settled, c->soil, &c->s->plain, &c->s->without_name);
+    enum dig_status status = dig_unlisted_find(&settled, &c->s->plain, &c->s->without_name);
     if (status != DIG_OK) {
         return status;
     }
@@ -188,8 +186,7 @@ enum dig_status dig_search_which(struct dig_search_work *const c)
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, 0);
     if (status == DIG_OK) {
-        status = dig_cross_validation_gain(c->batch, c->soil, &c->s->plain, &c->s->chosen,
-                                           &c->s->confirmed);
+        status = dig_cross_validation_gain(c->batch, &c->s->plain, &c->s->chosen, &c->s->confirmed);
     }
     if (status == DIG_OK &&
         (c->s->confirmed < 0.0 || !is_believable(c, evidence) || drifts_otherwise(c))) {

@@ -11,7 +11,6 @@
 
 struct dig_search_work {
     struct dig_whitened_digs  *batch;
-    const struct dig_soil     *soil;
     double                     false_alarm;
     size_t                     draws;
     uint64_t                   seed;
@@ -53,7 +52,6 @@ void dig_search_set_probabilities(struct dig_search_work *c);
 
 /// How many sigmas the parabola's own term is from nothing, of a fit that holds wear; of any other,
 /// or of fewer than five digs: 0. Microseconds.
-double dig_drift_bend(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
-                      const struct dig_fitted *fitted);
+double dig_drift_bend(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H

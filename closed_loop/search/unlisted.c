@@ -8,16 +8,15 @@
 #include <string.h>
 
 enum dig_status dig_unlisted_find(const struct dig_whitened_digs *const batch,
-                                  const struct dig_soil *const          soil,
                                   const struct dig_fitted *const        plain,
                                   struct dig_unlisted *const            unlisted)
 {
     assert(batch != NULL && plain != NULL && unlisted != NULL);
     struct dig_regressed means;
     struct dig_regressed digs;
-    enum dig_status      status = dig_regress(batch, soil, plain, false, &means);
+    enum dig_status      status = dig_regress(batch, plain, false, &means);
     if (status == DIG_OK) {
-        status = dig_regress(batch, soil, plain, true, &digs);
+        status = dig_regress(batch, plain, true, &digs);
     }
     if (status != DIG_OK) {
         return status;
@@ -37,14 +36,12 @@ enum dig_status dig_unlisted_find(const struct dig_whitened_digs *const batch,
 
 // How much of a group's mean residual is more than its noise: 0 … 1.
 static double credible(const struct dig_whitened_digs *const batch,
-                       const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                       const size_t g)
+                       const struct dig_fitted *const fitted, const size_t g)
 {
     const struct dig_whitened_digs_group *const group = &batch->group[g];
     double                                      model[DIG_FEATURES];
     double                                      squares = 0.0;
-    dig_hypothesis_whitened(soil, &fitted->hypothesis, fitted->number, group,
-                            dig_whitened_digs_first(batch, g), model);
+    dig_fitted_whitened(batch, fitted, g, dig_whitened_digs_first(batch, g), model);
     for (size_t k = 0; k < group->features; k++) {
         squares += pow(group->mean[k] - model[k], 2.0);
     }
@@ -54,12 +51,13 @@ static double credible(const struct dig_whitened_digs *const batch,
 }
 
 // What is left of a dig's curves.
-static void left_of(const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                    const struct dig_measured *const dig,
-                    double                           left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+static void left_of(const struct dig_whitened_digs *const batch,
+                    const struct dig_fitted *const fitted, const size_t i,
+                    double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
-    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    dig_hypothesis_curve(soil, &fitted->hypothesis, fitted->number, dig, curve);
+    const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+    double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    dig_fitted_curve(batch->soil, fitted, dig, curve);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             left[c][k] = dig->value[c][k] - dig->machine[c][k] - curve[c][k];
@@ -69,8 +67,8 @@ static void left_of(const struct dig_soil *const soil, const struct dig_fitted *
 
 // The mean of what is left of a group's digs.
 static void mean_left(const struct dig_whitened_digs *const batch,
-                      const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                      const size_t g, double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+                      const struct dig_fitted *const fitted, const size_t g,
+                      double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
     memset(mean, 0, DIG_FORCE_CHANNELS * sizeof mean[0]);
     for (size_t i = 0; i < batch->digs; i++) {
@@ -78,7 +76,7 @@ static void mean_left(const struct dig_whitened_digs *const batch,
         if (batch->dig[i].group != g) {
             continue;
         }
-        left_of(soil, fitted, &batch->measured[batch->dig[i].measured], left);
+        left_of(batch, fitted, i, left);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 mean[c][k] += left[c][k] / (double)batch->group[g].digs;
@@ -90,20 +88,19 @@ static void mean_left(const struct dig_whitened_digs *const batch,
 // What is gained, in squares of the moment, when each dig of a group is predicted from the others'
 // residuals.
 static double gain_of(const struct dig_whitened_digs *const batch,
-                      const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                      const size_t g)
+                      const struct dig_fitted *const fitted, const size_t g)
 {
-    const double by = credible(batch, soil, fitted, g);
+    const double by = credible(batch, fitted, g);
     const double n  = (double)batch->group[g].digs;
     double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double       gain = 0.0;
-    mean_left(batch, soil, fitted, g, mean);
+    mean_left(batch, fitted, g, mean);
     for (size_t i = 0; n > 1.0 && i < batch->digs; i++) {
         double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         if (batch->dig[i].group != g) {
             continue;
         }
-        left_of(soil, fitted, &batch->measured[batch->dig[i].measured], left);
+        left_of(batch, fitted, i, left);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double own    = left[DIG_CHANNEL_MY_Nm][k];
             const double others = (n * mean[DIG_CHANNEL_MY_Nm][k] - own) / (n - 1.0);
@@ -116,12 +113,11 @@ static double gain_of(const struct dig_whitened_digs *const batch,
 // Whether a trajectory's mean residual is worth taking off. Digs that differ from each other rather
 // than from the table are made worse by it; of a dig alone the other trajectories tell.
 static void choose_groups(const struct dig_whitened_digs *const batch,
-                          const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                          bool helps[DIG_TRAJECTORY_MAX])
+                          const struct dig_fitted *const fitted, bool helps[DIG_TRAJECTORY_MAX])
 {
     bool all = true;
     for (size_t g = 0; g < batch->groups; g++) {
-        helps[g] = batch->group[g].digs < 2 || gain_of(batch, soil, fitted, g) > 0.0;
+        helps[g] = batch->group[g].digs < 2 || gain_of(batch, fitted, g) > 0.0;
         all      = all && helps[g];
     }
     for (size_t g = 0; g < batch->groups; g++) {
@@ -130,20 +126,19 @@ static void choose_groups(const struct dig_whitened_digs *const batch,
 }
 
 void dig_unlisted_correct(const struct dig_whitened_digs *const batch,
-                          const struct dig_soil *const soil, const struct dig_fitted *const fitted,
-                          struct dig_model_unlisted *const share)
+                          const struct dig_fitted *const        fitted,
+                          struct dig_model_unlisted *const      share)
 {
     bool helps[DIG_TRAJECTORY_MAX] = { false };
     memset(share->share, 0, sizeof share->share);
-    choose_groups(batch, soil, fitted, helps);
+    choose_groups(batch, fitted, helps);
     for (size_t g = 0; g < batch->groups; g++) {
         const size_t t  = batch->group[g].trajectory;
-        const double by = helps[g] ? credible(batch, soil, fitted, g) : 0.0;
+        const double by = helps[g] ? credible(batch, fitted, g) : 0.0;
         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        mean_left(batch, soil, fitted, g, mean);
-        dig_hypothesis_curve(soil, &fitted->hypothesis, fitted->number,
-                             dig_whitened_digs_first(batch, g), curve);
+        mean_left(batch, fitted, g, mean);
+        dig_fitted_curve(batch->soil, fitted, dig_whitened_digs_first(batch, g), curve);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             double squares = 0.0;
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {

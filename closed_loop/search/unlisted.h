@@ -21,13 +21,12 @@ struct dig_unlisted {
 
 /// Regresses what a fitted plain hypothesis leaves. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_unlisted_find(const struct dig_whitened_digs *batch,
-                                                 const struct dig_soil          *soil,
                                                  const struct dig_fitted        *plain,
                                                  struct dig_unlisted            *unlisted);
 
 /// What to add to the fitted curves, as shares of the rms of the fitted plain curve of each
 /// channel. Trajectories without digs in the batch get none. *share is the caller's.
-void dig_unlisted_correct(const struct dig_whitened_digs *batch, const struct dig_soil *soil,
-                          const struct dig_fitted *fitted, struct dig_model_unlisted *share);
+void dig_unlisted_correct(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
+                          struct dig_model_unlisted *share);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_UNLISTED_H

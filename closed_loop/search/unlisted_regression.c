@@ -44,18 +44,15 @@ static void put_rows(const struct dig_whitened_digs_group *const group,
 }
 
 static void fill_gravel(const struct dig_whitened_digs *const batch,
-                        const struct dig_soil *const soil, const struct dig_fitted *const plain,
-                        const size_t g, const double weight, const double model[DIG_FEATURES],
-                        struct regression *const r)
+                        const struct dig_fitted *const plain, const size_t g, const double weight,
+                        const double model[DIG_FEATURES], struct regression *const r)
 {
     const double step = 0.02;
     for (size_t a = 0; a < DIG_AXES; a++) {
-        double moved[DIG_HYPOTHESIS_NUMBERS];
-        double feature[DIG_FEATURES];
-        memcpy(moved, plain->number, sizeof moved);
-        moved[a] += soil->surface->set->axis_count[a] > 1 ? step : 0.0;
-        dig_hypothesis_features(soil, &plain->hypothesis, moved, dig_whitened_digs_first(batch, g),
-                                feature);
+        struct dig_fitted moved = *plain;
+        double            feature[DIG_FEATURES];
+        moved.number[a] += batch->soil->surface->set->axis_count[a] > 1 ? step : 0.0;
+        dig_fitted_features(batch->soil, &moved, dig_whitened_digs_first(batch, g), feature);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             feature[f] = (feature[f] - model[f]) / step;
         }
@@ -79,21 +76,20 @@ static void fill_functions(const struct dig_whitened_digs_group *const group,
 }
 
 static void fill_mean(const struct dig_whitened_digs *const batch,
-                      const struct dig_soil *const soil, const struct dig_fitted *const plain,
-                      const size_t g, const struct states *const mean,
-                      double amplitude[DIG_FORCE_CHANNELS], struct regression *const r)
+                      const struct dig_fitted *const plain, const size_t g,
+                      const struct states *const mean, double amplitude[DIG_FORCE_CHANNELS],
+                      struct regression *const r)
 {
     const struct dig_whitened_digs_group *const group  = &batch->group[g];
     const double                                weight = weight_of(batch, plain, g);
     double                                      model[DIG_FEATURES];
-    dig_hypothesis_features(soil, &plain->hypothesis, plain->number,
-                            dig_whitened_digs_first(batch, g), model);
+    dig_fitted_features(batch->soil, plain, dig_whitened_digs_first(batch, g), model);
     put_rows(group, model, weight, r->y + r->rows);
     for (size_t k = 0; k < group->features; k++) {
         r->y[r->rows + k] = weight * group->mean[k] - r->y[r->rows + k];
     }
     dig_features_amplitude(model, NULL, amplitude);
-    fill_gravel(batch, soil, plain, g, weight, model, r);
+    fill_gravel(batch, plain, g, weight, model, r);
     fill_functions(group, mean, weight, amplitude, r);
     r->rows += group->features;
 }
@@ -186,7 +182,7 @@ static void tell_nominal(const struct dig_whitened_digs *const batch, struct tol
         const struct dig_measured nominal = { .trajectory = (int)batch->group[g].trajectory,
                                               .pass       = 1,
                                               .pace       = 1.0 };
-        dig_basis_along(batch->surface->set, &nominal, told->mean[g].value);
+        dig_basis_along(batch->soil->surface->set, &nominal, told->mean[g].value);
     }
 }
 
@@ -202,7 +198,7 @@ static void tell_digs(const struct dig_whitened_digs *const batch, struct told *
                                                  .pace        = paced ? dig->pace : 1.0,
                                                  .pitch_known = dig->pitch_known,
                                                  .pitch_rad   = dig->pitch_rad };
-        dig_basis_along(batch->surface->set, &dug, told->dig[i].value);
+        dig_basis_along(batch->soil->surface->set, &dug, told->dig[i].value);
         for (size_t f = 0; f < DIG_BASES; f++) {
             for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
                 told->mean[g].value[f][b] +=
@@ -246,10 +242,10 @@ static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i
 }
 
 enum dig_status dig_regress(const struct dig_whitened_digs *const batch,
-                            const struct dig_soil *const soil, const struct dig_fitted *const plain,
-                            const bool each, struct dig_regressed *const regressed)
+                            const struct dig_fitted *const plain, const bool each,
+                            struct dig_regressed *const regressed)
 {
-    assert(batch != NULL && soil != NULL && plain != NULL && regressed != NULL);
+    assert(batch != NULL && plain != NULL && regressed != NULL);
     struct regression *const r    = malloc(sizeof *r);
     struct told *const       told = malloc(sizeof *told);
     if (r == NULL || told == NULL) {
@@ -268,7 +264,7 @@ enum dig_status dig_regress(const struct dig_whitened_digs *const batch,
     }
     r->rows = 0;
     for (size_t g = 0; g < batch->groups; g++) {
-        fill_mean(batch, soil, plain, g, &told->mean[g], amplitude[g], r);
+        fill_mean(batch, plain, g, &told->mean[g], amplitude[g], r);
     }
     for (size_t i = 0; each && i < batch->digs; i++) {
         struct states less;

@@ -23,7 +23,6 @@ struct dig_regressed {
 /// from each must bring more evidence, by the log of their number over that of those of the
 /// trajectory: chance finds a function no more often. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_regress(const struct dig_whitened_digs *batch,
-                                           const struct dig_soil          *soil,
                                            const struct dig_fitted *plain, bool each,
                                            struct dig_regressed *regressed);
 

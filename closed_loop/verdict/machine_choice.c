@@ -62,7 +62,7 @@ static void take_off_batch(const struct dig_whitened_digs *const raw,
 
 // The log evidence of the digs, of the best that the soil can be: *best.
 static double soil_evidence(const struct dig_whitened_digs *const batch,
-                            const struct dig_soil *const soil, struct dig_fitted *const best)
+                            struct dig_fitted *const              best)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
@@ -70,12 +70,12 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
     struct dig_fitted                  fitted[DIG_RIVALS_MAX + 1];
     struct dig_fitted                  unnamed;
     struct dig_statistic               statistic;
-    const size_t                       rivals = dig_search_rivals(batch, soil, single);
-    dig_null_simulation_fit(batch, soil, &none, rivals, single, middle, DIG_FIT_THOROUGH, fitted,
+    const size_t                       rivals = dig_search_rivals(batch, single);
+    dig_null_simulation_fit(batch, &none, rivals, single, middle, DIG_FIT_THOROUGH, fitted,
                             &statistic);
     *best         = fitted[0];
     double misfit = fitted[0].misfit;
-    dig_hypothesis_fit_unlisted(batch, soil, &fitted[0], &unnamed);
+    dig_hypothesis_fit_unlisted(batch, &fitted[0], &unnamed);
     if (unnamed.misfit + 2.0 * unnamed_cost < misfit) {
         misfit = unnamed.misfit + 2.0 * unnamed_cost;
         *best  = unnamed;
@@ -132,7 +132,7 @@ static enum dig_status weigh(const struct dig_trace_work *const w, const size_t 
         take_off_batch(w->batch, w->measured, &scratch->batch);
         scratch->batch.steps = answer.wide ? &scratch->steps : NULL;
         const double evidence =
-            answer.log_evidence + soil_evidence(&scratch->batch, w->soil, &soil) - choice->soil0;
+            answer.log_evidence + soil_evidence(&scratch->batch, &soil) - choice->soil0;
         const double *const z = answer.wide ? soil.z : none;
         dig_machine_steps_values(z, NULL, &answer);
         keep_best(&answer, from, evidence, z, choice);
@@ -245,7 +245,7 @@ static enum dig_status choose(struct dig_trace_work *const w, struct choice *con
     enum dig_status                   status  = DIG_OK;
     struct dig_fitted                 soil;
     choice->evidence = -INFINITY;
-    choice->soil0    = soil_evidence(w->batch, w->soil, &soil);
+    choice->soil0    = soil_evidence(w->batch, &soil);
     // All that an answer could explain of the digs.
     const double left = 0.5 * (w->before.squares - dig_whitened_digs_about(w->batch));
     for (size_t i = 0; i < air->answers; i++) {

@@ -122,12 +122,12 @@ enum dig_status dig_residuals_make(const struct dig_trace_work *const w,
     }
     enum dig_status status = fill_trends(w, curves, made);
     if (status == DIG_OK) {
-        status = dig_portmanteau_judge(w->batch, w->soil, &w->search->plain, WHITE_DRAWS,
-                                       w->settings->seed, &made->without);
+        status = dig_portmanteau_judge(w->batch, &w->search->plain, WHITE_DRAWS, w->settings->seed,
+                                       &made->without);
     }
     if (status == DIG_OK) {
-        status = dig_portmanteau_judge(w->batch, w->soil, &w->search->chosen, WHITE_DRAWS,
-                                       w->settings->seed, &made->with);
+        status = dig_portmanteau_judge(w->batch, &w->search->chosen, WHITE_DRAWS, w->settings->seed,
+                                       &made->with);
     }
     if (status == DIG_OK) {
         *residuals = *made;

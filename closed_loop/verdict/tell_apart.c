@@ -72,8 +72,8 @@ static double apart(const struct dig_trace_work *const w, const struct dig_fitte
     double x[DIG_FEATURES];
     double y[DIG_FEATURES];
     double size[DIG_FORCE_CHANNELS];
-    dig_hypothesis_features(w->soil, &a->hypothesis, a->number, dig, x);
-    dig_hypothesis_features(w->soil, &b->hypothesis, b->number, dig, y);
+    dig_fitted_features(w->soil, a, dig, x);
+    dig_fitted_features(w->soil, b, dig, y);
     dig_features_amplitude(x, NULL, size);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         y[f] = x[f] - y[f];

@@ -217,7 +217,7 @@ static void choose_rate(struct dig_trace_work *const w)
     static const struct dig_hypothesis rate = { .effects = 1,
                                                 .effect  = { DIG_EFFECT_RATE_DEPENDENCE } };
     assert(w->soil != NULL);
-    if (!dig_hypothesis_possible(w->batch, w->soil, DIG_EFFECT_RATE_DEPENDENCE)) {
+    if (!dig_hypothesis_possible(w->batch, DIG_EFFECT_RATE_DEPENDENCE)) {
         return;
     }
     double misfit[2];
@@ -226,7 +226,7 @@ static void choose_rate(struct dig_trace_work *const w)
         double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         memcpy(start, w->before.number, DIG_AXES * sizeof start[0]);
         w->soil->along = (double)along;
-        dig_hypothesis_fit(w->batch, w->soil, &rate, start, DIG_FIT_THOROUGH, &fitted);
+        dig_hypothesis_fit(w->batch, &rate, start, DIG_FIT_THOROUGH, &fitted);
         misfit[along] = fitted.misfit;
     }
     w->soil->along = misfit[1] < misfit[0] ? 1.0 : 0.0;
@@ -245,7 +245,7 @@ static enum dig_status weigh_soil(struct dig_trace_work *const w)
          s->significant && !s->unlisted && e < s->chosen.hypothesis.effects && status == DIG_OK;
          e++) {
         double size = 0.0;
-        status = dig_effect_size_of_soil(w->batch, w->soil, &s->chosen, e, s->plain.noise, &size);
+        status      = dig_effect_size_of_soil(w->batch, &s->chosen, e, s->plain.noise, &size);
         s->probability[e] *= fmax(dig_effect_size_chance(size), DIG_TRACE_UNCONFIRMED);
     }
     return status;
@@ -263,11 +263,10 @@ static enum dig_status find_intervals(struct dig_trace_work *const w, const uint
                                       double covariance[])
 {
     struct dig_search *const s = w->search;
-    enum dig_status          status =
-        dig_posterior_intervals(w->batch, w->soil, seed, &s->chosen, covariance);
+    enum dig_status status     = dig_posterior_intervals(w->batch, seed, &s->chosen, covariance);
     for (size_t i = 0; i < s->rivals && status == DIG_OK; i++) {
         if (is_in_set(s, s->rival[i].hypothesis.effect[0])) {
-            status = dig_posterior_intervals(w->batch, w->soil, seed, &s->rival[i], NULL);
+            status = dig_posterior_intervals(w->batch, seed, &s->rival[i], NULL);
             continue;
         }
         for (size_t j = 0; j < DIG_HYPOTHESIS_NUMBERS; j++) {
@@ -291,7 +290,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
         status = dig_trace_batch(w, &w->before, error);
     }
     if (status == DIG_OK) {
-        status = dig_posterior_intervals(w->batch, w->soil, settings->seed, &w->before, NULL);
+        status = dig_posterior_intervals(w->batch, settings->seed, &w->before, NULL);
     }
     double            covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
     struct dig_fitted plain = w->before;
@@ -303,8 +302,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
         choose_rate(w);
         const double level =
             w->machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
-        status = dig_search_run(w->batch, w->soil, level, settings->bootstraps, settings->seed,
-                                w->search);
+        status = dig_search_run(w->batch, level, settings->bootstraps, settings->seed, w->search);
     }
     if (status == DIG_OK) {
         dig_trace_doubt_soil(w);

@@ -36,7 +36,7 @@ enum dig_status dig_trace_confirm_without_air(struct dig_trace_work *const w)
         w->confirmed = was_tried(w->batch);
         return status;
     }
-    status       = dig_cross_validation_gain(w->batch, w->soil, &s->plain, &s->chosen, &gain);
+    status       = dig_cross_validation_gain(w->batch, &s->plain, &s->chosen, &gain);
     w->confirmed = gain > 0.0;
     return status;
 }

@@ -83,17 +83,16 @@ static void sum_by_part(const struct dig_trace_work *const          w,
 enum dig_part dig_trace_seen_in(const struct dig_trace_work *const w,
                                 const struct dig_fitted *const fitted, const size_t effect)
 {
-    double sum[DIG_TRACE_PHASES]   = { 0.0 };
-    double count[DIG_TRACE_PHASES] = { 0.0 };
-    double without[DIG_HYPOTHESIS_NUMBERS];
-    memcpy(without, fitted->number, sizeof without);
-    without[DIG_AT_U(effect)] = 0.0;
+    double            sum[DIG_TRACE_PHASES]   = { 0.0 };
+    double            count[DIG_TRACE_PHASES] = { 0.0 };
+    struct dig_fitted without                 = *fitted;
+    without.number[DIG_AT_U(effect)]          = 0.0;
     for (size_t i = 0; i < w->batch->digs; i++) {
         const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
         double                           with[DIG_FEATURES];
         double                           plain[DIG_FEATURES];
-        dig_hypothesis_features(w->soil, &fitted->hypothesis, fitted->number, dig, with);
-        dig_hypothesis_features(w->soil, &fitted->hypothesis, without, dig, plain);
+        dig_fitted_features(w->soil, fitted, dig, with);
+        dig_fitted_features(w->soil, &without, dig, plain);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             with[f] -= plain[f];
         }
@@ -111,8 +110,8 @@ void dig_trace_fill_residuals(const struct dig_trace_work *const w,
         const struct dig_whitened_digs_group *const group = &w->batch->group[g];
         double                                      model[DIG_FEATURES];
         double                                      mean[DIG_FEATURES] = { 0.0 };
-        dig_hypothesis_features(w->soil, &w->search->plain.hypothesis, w->search->plain.number,
-                                dig_whitened_digs_first(w->batch, g), model);
+        dig_fitted_features(w->soil, &w->search->plain, dig_whitened_digs_first(w->batch, g),
+                            model);
         for (size_t i = 0; i < w->batch->digs; i++) {
             if (w->batch->dig[i].group != g) {
                 continue;
@@ -193,10 +192,10 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
         if (!w->surface->known[trajectory]) {
             continue;
         }
-        dig_hypothesis_curve(w->soil, &before->hypothesis, before->number, dig, c->before);
+        dig_fitted_curve(w->soil, before, dig, c->before);
         dig_judge_sd(w->surface, w->scatter, trajectory, before->number, noise_of(w, before, dig),
                      c->before_sd);
-        dig_hypothesis_curve(w->soil, &after->hypothesis, after->number, dig, c->after);
+        dig_fitted_curve(w->soil, after, dig, c->after);
         dig_judge_sd(w->surface, w->scatter, trajectory, after->number, noise_of(w, after, dig),
                      c->after_sd);
         if (unlisted != NULL) {
@@ -227,8 +226,7 @@ static double fit_error(const struct dig_trace_work *const w, const struct dig_f
     for (size_t i = 0; i < w->batch->digs; i++) {
         const size_t m = w->batch->dig[i].measured;
         take[m]        = true;
-        dig_hypothesis_curve(w->soil, &fitted->hypothesis, fitted->number, &w->measured[m],
-                             curves[m].after);
+        dig_fitted_curve(w->soil, fitted, &w->measured[m], curves[m].after);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             curves[m].after[DIG_CHANNEL_MY_Nm][k] += w->measured[m].machine[DIG_CHANNEL_MY_Nm][k];
         }

@@ -68,7 +68,7 @@ enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *const w,
             return DIG_ENOMEM;
         }
         if (of_soil) {
-            dig_unlisted_correct(w->batch, w->soil, &s->chosen, trace->unlisted);
+            dig_unlisted_correct(w->batch, &s->chosen, trace->unlisted);
         }
         (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
                        s->is_rock             ? "where the rock lies"

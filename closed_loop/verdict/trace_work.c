@@ -125,7 +125,7 @@ static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
 
 static enum dig_status make_batch(const struct dig_trace_work *const w, const double place[])
 {
-    return dig_whitened_digs_make(w->surface, w->scatter, w->digs, w->measured, w->fit, place,
+    return dig_whitened_digs_make(w->soil, w->scatter, w->digs, w->measured, w->fit, place,
                                   w->batch);
 }
 
@@ -133,7 +133,7 @@ static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *c
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    dig_hypothesis_fit(w->batch, w->soil, &none, middle, DIG_FIT_THOROUGH, plain);
+    dig_hypothesis_fit(w->batch, &none, middle, DIG_FIT_THOROUGH, plain);
 }
 
 // Of digs that are whitened otherwise, too, in units of the table. What was taken off was dug in

@@ -70,8 +70,7 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
     }
     assert_int_equal(digs, 2);
     dig_response_surface_place(surface, &dug->gravel[entry], place);
-    assert_int_equal(dig_whitened_digs_make(surface, scatter, digs, mean, all, place, batch),
-                     DIG_OK);
+    assert_int_equal(dig_whitened_digs_make(soil, scatter, digs, mean, all, place, batch), DIG_OK);
     for (size_t g = 0; g < batch->groups; g++) {
         batch->group[g].digs = 2;
     }
@@ -92,14 +91,14 @@ TEST(intervals_hold_between_the_grids_points)
             continue; // the grid of these gravels has holes
         }
         make_batch(e, place, &batch);
-        dig_likelihood_init(&likelihood, &batch, soil, &plain);
+        dig_likelihood_init(&likelihood, &batch, &plain);
         dig_likelihood_weigh(&likelihood, place);
         log_likelihood -= 0.5 * dig_likelihood_means(&likelihood, place);
         for (size_t g = 0; g < batch.groups; g++) {
             log_likelihood -= 0.5 * likelihood.error[g].log_det;
         }
-        dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted, NULL), DIG_OK);
+        dig_hypothesis_fit(&batch, &plain, middle, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_intervals(&batch, 1, &fitted, NULL), DIG_OK);
         for (size_t a = 0; a < DIG_AXES; a++) {
             held += fitted.low[a] <= place[a] && place[a] <= fitted.high[a] ? 1 : 0;
         }

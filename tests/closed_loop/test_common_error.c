@@ -25,8 +25,7 @@ static const struct dig_whitened_digs_group *make_group(void)
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
     return &batch.group[0];
 }
 

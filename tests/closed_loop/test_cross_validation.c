@@ -25,8 +25,7 @@ static void dig_with_lone(const size_t lone, const double layer, uint64_t seed)
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
 }
 
 static void dig_with(const double layer, const uint64_t seed)
@@ -39,16 +38,15 @@ static const struct dig_fitted *fit_of(const enum dig_effect_id effect, const si
     static struct dig_fitted    fitted[2];
     const struct dig_hypothesis hypothesis = { .effects = effects, .effect = { effect } };
     const double                middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    dig_hypothesis_fit(&batch, soil, &hypothesis, middle, DIG_FIT_THOROUGH, &fitted[effects]);
+    dig_hypothesis_fit(&batch, &hypothesis, middle, DIG_FIT_THOROUGH, &fitted[effects]);
     return &fitted[effects];
 }
 
 static double gain_of(const enum dig_effect_id effect)
 {
     double gain = (double)NAN;
-    assert_int_equal(
-        dig_cross_validation_gain(&batch, soil, fit_of(effect, 0), fit_of(effect, 1), &gain),
-        DIG_OK);
+    assert_int_equal(dig_cross_validation_gain(&batch, fit_of(effect, 0), fit_of(effect, 1), &gain),
+                     DIG_OK);
     return gain;
 }
 
@@ -78,8 +76,7 @@ TEST(what_cannot_be_fitted_to_the_others_counts_nothing)
     dig_with(0.0, 5);
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
     assert_close(gain_of(DIG_EFFECT_WEAR), 0.0, 0.0);
 }
 

@@ -78,8 +78,7 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
         }
     }
     dig_response_surface_place(surface, &dug->entry[entry].gravel, place);
-    assert_int_equal(dig_whitened_digs_make(surface, scatter, digs, dig, all, place, batch),
-                     DIG_OK);
+    assert_int_equal(dig_whitened_digs_make(soil, scatter, digs, dig, all, place, batch), DIG_OK);
     for (size_t g = 0; g < batch->groups; g++) {
         batch->group[g].repeats = 0.0; // they are alike for being means
     }
@@ -106,7 +105,7 @@ TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
         make_batch(i, x, &batch);
         x[DIG_AT_U(0)]        = u_of(e);
         x[DIG_AT_CONTRAST(0)] = 1.0;
-        dig_likelihood_init(&likelihood, &batch, soil, &hypothesis);
+        dig_likelihood_init(&likelihood, &batch, &hypothesis);
         dig_likelihood_weigh(&likelihood, x);
         const double means = dig_likelihood_means(&likelihood, x);
         misfit += means;
@@ -145,12 +144,12 @@ TEST(intervals_beside_an_effect_hold)
         }
         make_batch(i, truth, &batch);
         truth[DIG_AT_U(0)] = u_of(e);
-        dig_null_simulation_fit(&batch, soil, &plain, 1, &single, middle, DIG_FIT_THOROUGH, fitted,
+        dig_null_simulation_fit(&batch, &plain, 1, &single, middle, DIG_FIT_THOROUGH, fitted,
                                 &statistic);
         if (statistic.gain < 12.0) {
             continue; // not found
         }
-        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted[1], NULL), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&batch, 1, &fitted[1], NULL), DIG_OK);
         for (size_t n = 0; n <= DIG_AT_U(0); n++) {
             const bool is_u = n == DIG_AT_U(0);
             const bool in =

@@ -32,12 +32,11 @@ static int make(void **state)
     }
     dig_response_surface_place(world.surface, &gravel, place);
     static const struct dig_hypothesis none = { .effects = 0 };
-    if (dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch) !=
-            DIG_OK ||
-        dig_soil_create(world.surface, world.effects, world.scatter, &soil) != DIG_OK) {
+    if (dig_soil_create(world.surface, world.effects, world.scatter, &soil) != DIG_OK ||
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch) != DIG_OK) {
         return 1;
     }
-    dig_hypothesis_fit(batch, soil, &none, middle, DIG_FIT_THOROUGH, &plain);
+    dig_hypothesis_fit(batch, &none, middle, DIG_FIT_THOROUGH, &plain);
     return 0;
 }
 
@@ -179,7 +178,7 @@ static double size_of(const double layer, const double cohesion)
     chosen.number[DIG_AT_CONTRAST(0)] = 1.0;
     chosen.number[DIG_AT_U(1)]        = layer;
     chosen.number[DIG_AT_CONTRAST(1)] = 1.0;
-    assert_int_equal(dig_effect_size_of_soil(batch, soil, &chosen, 1, plain.noise, &size), DIG_OK);
+    assert_int_equal(dig_effect_size_of_soil(batch, &chosen, 1, plain.noise, &size), DIG_OK);
     return size;
 }
 

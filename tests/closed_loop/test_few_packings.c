@@ -99,9 +99,9 @@ static size_t found(const double strength)
         assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
         assert_int_equal(dig_scatter_pool(surface, PACKINGS, residual, &scatter), DIG_OK);
         assert_int_equal(dig_soil_create(surface, NULL, scatter, &soil), DIG_OK);
-        assert_int_equal(dig_whitened_digs_make(surface, scatter, DIGS, dig, take, place, &batch),
+        assert_int_equal(dig_whitened_digs_make(soil, scatter, DIGS, dig, take, place, &batch),
                          DIG_OK);
-        assert_int_equal(dig_search_run(&batch, soil, level, DRAWS, c, &search), DIG_OK);
+        assert_int_equal(dig_search_run(&batch, level, DRAWS, c, &search), DIG_OK);
         count += search.significant ? 1 : 0;
         free(soil);
         dig_scatter_destroy(scatter);

@@ -81,14 +81,14 @@ TEST(the_tables_error_counts_for_less_beside_larger_digs)
         double                          place[DIG_AXES];
         dig(&gravel, larger, 9);
         dig_response_surface_place(world.surface, &gravel, place);
-        assert_int_equal(dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take,
-                                                place, &batch),
-                         DIG_OK);
-        dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(
+            dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch),
+            DIG_OK);
+        dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &fitted);
         const struct dig_gravel found = dig_response_surface_gravel(world.surface, fitted.number);
         const double            truth = made_variance(&batch.group[0], &found);
         struct dig_common_error error[DIG_TRAJECTORY_MAX];
-        dig_hypothesis_errors(&batch, soil, &fitted, error);
+        dig_hypothesis_errors(&batch, &fitted, error);
         const double said = error[0].even - rough;
         assert_true(said > 0.5 * truth && said < 2.0 * truth);
     }
@@ -115,7 +115,7 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
 {
     double                  sum = 0.0;
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
-    dig_hypothesis_errors(b, soil, by, error);
+    dig_hypothesis_errors(b, by, error);
     for (size_t g = 0; g < b->groups; g++) {
         const struct dig_whitened_digs_group *const group = &b->group[g];
         double                                      model[DIGS][DIG_FEATURES];
@@ -123,7 +123,7 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
         double                                      mean[DIG_FEATURES] = { 0.0 };
         for (size_t i = 0; i < b->digs; i++) {
             double feature[DIG_FEATURES];
-            dig_hypothesis_features(soil, &f->hypothesis, f->number, &b->measured[i], feature);
+            dig_fitted_features(soil, f, &b->measured[i], feature);
             dig_whitened_digs_whiten(group, feature, model[i]);
             for (size_t k = 0; b->dig[i].group == g && k < group->features; k++) {
                 mean[k] += model[i][k] / (double)group->digs;
@@ -180,11 +180,10 @@ TEST(a_fit_ends_where_the_squares_it_tells_are_least)
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
     for (size_t h = 0; h < sizeof all / sizeof all[0]; h++) {
         struct dig_fitted fitted;
-        dig_hypothesis_fit(&batch, soil, &all[h], start, DIG_FIT_BARE, &fitted);
+        dig_hypothesis_fit(&batch, &all[h], start, DIG_FIT_BARE, &fitted);
         assert_close(fitted.squares, squares_of(&batch, &fitted, &fitted), 1e-9 * fitted.squares);
         assert_false(is_lower_beside(&batch, &fitted));
     }

@@ -39,8 +39,7 @@ static void make_digs(const struct dig_gravel *const gravel, uint64_t *const see
     }
     dig_response_surface_place(world.surface, gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
     steps = (struct dig_steps){ .steps = STEPS };
     for (size_t g = 0; g < batch.groups; g++) {
         const double           changed[DIG_AXES] = { place[0] + 0.4, place[1], place[2] };
@@ -76,7 +75,7 @@ static double misfit_of(const struct dig_whitened_digs *const digs, const double
     static struct dig_likelihood l;
     static double                r[DIG_LIKELIHOOD_RESIDUALS];
     double                       squares;
-    dig_likelihood_init(&l, digs, soil, &plain);
+    dig_likelihood_init(&l, digs, &plain);
     dig_likelihood_weigh(&l, x);
     dig_likelihood_residual(&l, x, r);
     memcpy(z, r + l.residuals - l.steps, l.steps * sizeof z[0]);
@@ -134,21 +133,20 @@ TEST(fitted_steps_are_as_far_off_as_is_said)
     double                          sum[STEPS] = { 0.0 };
     struct dig_fitted               truth;
     make_digs(&gravel, &seed);
-    dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &truth);
+    dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &truth);
     for (int c = 0; c < campaigns(); c++) {
         double            z[STEPS];
         double            covariance[STEPS * STEPS];
         struct dig_fitted fitted;
         drawn = batch;
-        dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
+        dig_null_simulation_digs(&batch, &truth, &seed, &drawn);
         for (size_t k = 0; k < STEPS; k++) {
             z[k] = -model_normal(&seed);
         }
         shift(&drawn, z);
         drawn.steps = &steps;
-        dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted, covariance),
-                         DIG_OK);
+        dig_hypothesis_fit(&drawn, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_intervals(&drawn, (uint64_t)c, &fitted, covariance), DIG_OK);
         for (size_t k = 0; k < STEPS; k++) {
             sum[k] += pow(fitted.z[k] + z[k], 2.0) / covariance[k * STEPS + k] / campaigns();
         }
@@ -160,8 +158,8 @@ TEST(fitted_steps_are_as_far_off_as_is_said)
         struct dig_fitted fitted;
         steps.middle[1] = c % 2 == 0 ? 0.0 : 5.0;
         drawn           = batch;
-        dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
-        dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
+        dig_null_simulation_digs(&batch, &truth, &seed, &drawn);
+        dig_hypothesis_fit(&drawn, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
         left[c % 2] += fitted.squares / (0.5 * campaigns());
     }
     print_message("squares left about a middle of 0 and of 5: %.1f, %.1f\n", left[0], left[1]);

@@ -106,7 +106,7 @@ static void make_batch(const struct ground *const g, double place[DIG_AXES],
     bool all[DIGS_MAX];
     memset(all, true, sizeof all);
     dig_response_surface_place(surface, &g->gravel, place);
-    assert_int_equal(dig_whitened_digs_make(surface, scatter, g->digs, g->dig, all, place, batch),
+    assert_int_equal(dig_whitened_digs_make(soil, scatter, g->digs, g->dig, all, place, batch),
                      DIG_OK);
 }
 
@@ -120,7 +120,7 @@ TEST(what_the_digs_leave_of_the_table_is_as_large_as_expected)
     for (size_t i = 0; i < grounds; i++) {
         double place[DIG_AXES];
         make_batch(&ground[i], place, &batch);
-        dig_likelihood_init(&likelihood, &batch, soil, &plain);
+        dig_likelihood_init(&likelihood, &batch, &plain);
         dig_likelihood_weigh(&likelihood, place);
         const double of_means = dig_likelihood_means(&likelihood, place);
         means += of_means;
@@ -153,8 +153,8 @@ TEST(intervals_of_the_gravel_hold)
         struct dig_fitted fitted;
         double            place[DIG_AXES];
         make_batch(&ground[i], place, &batch);
-        dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&batch, soil, 1, &fitted, NULL), DIG_OK);
+        dig_hypothesis_fit(&batch, &plain, middle, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_intervals(&batch, 1, &fitted, NULL), DIG_OK);
         for (size_t a = 0; a < DIG_AXES; a++) {
             // An interval may not hold everything either.
             held += place[a] >= fitted.low[a] - 1e-9 && place[a] <= fitted.high[a] + 1e-9 &&

@@ -46,15 +46,14 @@ static struct dig_whiteness judge(const double magnitude, uint64_t seed)
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
     const struct dig_hypothesis none                          = { .effects = 0 };
     double                      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_fitted           plain;
     struct dig_whiteness        white = { .digs = 77 };
     memcpy(start, place, sizeof place);
-    dig_hypothesis_fit(batch, soil, &none, start, DIG_FIT_THOROUGH, &plain);
-    assert_int_equal(dig_portmanteau_judge(batch, soil, &plain, DRAWS, seed, &white), DIG_OK);
+    dig_hypothesis_fit(batch, &none, start, DIG_FIT_THOROUGH, &plain);
+    assert_int_equal(dig_portmanteau_judge(batch, &plain, DRAWS, seed, &white), DIG_OK);
     assert_int_equal(white.digs, DIGS);
     return white;
 }

@@ -29,9 +29,8 @@ static struct dig_fitted fit_digs(const struct dig_gravel *const gravel, uint64_
     }
     dig_response_surface_place(world.surface, gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
-    dig_hypothesis_fit(&batch, soil, &plain, start, DIG_FIT_THOROUGH, &fitted);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &fitted);
     return fitted;
 }
 
@@ -51,9 +50,9 @@ TEST(nine_intervals_of_ten_hold_the_truth)
             truth.number[a] = 2.0 * model_uniform(&seed) - 1.0;
         }
         drawn = batch;
-        dig_null_simulation_digs(&batch, soil, &truth, &seed, &drawn);
-        dig_hypothesis_fit(&drawn, soil, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
-        assert_int_equal(dig_posterior_intervals(&drawn, soil, (uint64_t)c, &fitted, NULL), DIG_OK);
+        dig_null_simulation_digs(&batch, &truth, &seed, &drawn);
+        dig_hypothesis_fit(&drawn, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
+        assert_int_equal(dig_posterior_intervals(&drawn, (uint64_t)c, &fitted, NULL), DIG_OK);
         for (size_t a = 0; a < DIG_AXES; a++) {
             const double at = truth.number[a];
             assert_true(fitted.low[a] <= fitted.number[a] && fitted.number[a] <= fitted.high[a]);
@@ -87,9 +86,9 @@ TEST(an_interval_holds_nine_tenths_of_the_posterior)
     double                       all                     = 0.0;
     for (size_t s = 0; s < SEEDS; s++) {
         fitted[s] = found;
-        assert_int_equal(dig_posterior_intervals(&batch, soil, s, &fitted[s], NULL), DIG_OK);
+        assert_int_equal(dig_posterior_intervals(&batch, s, &fitted[s], NULL), DIG_OK);
     }
-    dig_likelihood_init(&l, &batch, soil, &plain);
+    dig_likelihood_init(&l, &batch, &plain);
     dig_likelihood_weigh(&l, found.number);
     for (int i = 0; i < GRID * GRID * GRID; i++) {
         const double x[DIG_AXES] = { 2.0 * (i % GRID) / (GRID - 1.0) - 1.0,

@@ -75,14 +75,13 @@ static void dig(const double ahead_m, const double factor[], uint64_t seed)
     double place[DIG_AXES];
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
 }
 
 static struct dig_search search(void)
 {
     static struct dig_search found;
-    assert_int_equal(dig_search_run(&batch, soil, 0.01, DRAWS, 5, &found), DIG_OK);
+    assert_int_equal(dig_search_run(&batch, 0.01, DRAWS, 5, &found), DIG_OK);
     return found;
 }
 
@@ -123,8 +122,7 @@ TEST(what_is_no_hump_is_no_rock)
     }
     static const bool take[DIGS] = { true, true, true, true, true, true };
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, &batch), DIG_OK);
     found = search();
     assert_true(found.significant && found.unlisted);
     assert_false(found.is_rock);

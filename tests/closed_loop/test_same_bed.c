@@ -36,8 +36,7 @@ static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], co
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
     return batch;
 }
 
@@ -86,7 +85,7 @@ TEST(the_mean_of_one_bed_is_no_nearer_to_its_gravel)
             struct dig_whitened_digs *const batch =
                 batch_of(measured, once ? 1 : DIGS, 0.03, 100 * seed);
             struct dig_fitted fitted;
-            dig_hypothesis_fit(batch, soil, &plain, middle, DIG_FIT_THOROUGH, &fitted);
+            dig_hypothesis_fit(batch, &plain, middle, DIG_FIT_THOROUGH, &fitted);
             mean[once] += (fitted.squares - batch->group[0].about) / CAMPAIGNS;
             free(batch);
         }

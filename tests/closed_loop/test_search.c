@@ -44,8 +44,7 @@ static void put_in_batch(const struct dig_gravel *const gravel, const size_t dig
     }
     dig_response_surface_place(world.surface, gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
 }
 
 static struct dig_search search_some(const struct dig_gravel *const gravel, const size_t digs,
@@ -53,7 +52,7 @@ static struct dig_search search_some(const struct dig_gravel *const gravel, cons
 {
     static struct dig_search found;
     put_in_batch(gravel, digs);
-    assert_int_equal(dig_search_run(&batch, soil, false_alarm, DRAWS, seed, &found), DIG_OK);
+    assert_int_equal(dig_search_run(&batch, false_alarm, DRAWS, seed, &found), DIG_OK);
     return found;
 }
 
@@ -282,7 +281,6 @@ TEST(a_pair_does_not_lead_for_having_been_fitted_better)
     const double             magnitude = 0.5;
     struct dig_search        s         = search(&gravel, 1, &slope, &magnitude, 102);
     struct dig_search_work   c         = { .batch       = &batch,
-                                           .soil        = soil,
                                            .false_alarm = 2.0, // a second effect is looked for
                                            .draws       = DRAWS,
                                            .seed        = 5,
@@ -290,8 +288,8 @@ TEST(a_pair_does_not_lead_for_having_been_fitted_better)
     for (size_t i = 0; i < s.rivals; i++) {
         c.single[i] = s.rival[i].hypothesis;
     }
-    assert_int_equal(dig_null_simulation_draw(&batch, soil, &s.plain, s.rivals, c.single, DRAWS,
-                                              NULL, &c.seed, &c.plain_null),
+    assert_int_equal(dig_null_simulation_draw(&batch, &s.plain, s.rivals, c.single, DRAWS, NULL,
+                                              &c.seed, &c.plain_null),
                      DIG_OK);
     const size_t best   = dig_search_best_rival(&s, NULL);
     const double before = s.log_evidence[best];
@@ -347,7 +345,7 @@ TEST(what_is_open_of_the_machine_is_no_effect_of_the_soil)
             struct dig_whitened_digs closed = batch;
             steps.middle[0]                 = 0.3; // what free air says: of a variance of 1
             batch.steps                     = &steps;
-            assert_int_equal(dig_search_run(&batch, soil, 0.01, DRAWS, seed, &found), DIG_OK);
+            assert_int_equal(dig_search_run(&batch, 0.01, DRAWS, seed, &found), DIG_OK);
             if (effects == 1) {
                 assert_true(found.significant && !found.unlisted);
                 assert_int_equal(found.chosen.hypothesis.effect[0], slope);
@@ -356,7 +354,7 @@ TEST(what_is_open_of_the_machine_is_no_effect_of_the_soil)
             }
             alarms[0] += found.significant ? 1 : 0;
             assert_true(found.significant || fabs(found.chosen.z[0] + off[0]) < 0.5);
-            assert_int_equal(dig_search_run(&closed, soil, 0.01, DRAWS, seed, &found), DIG_OK);
+            assert_int_equal(dig_search_run(&closed, 0.01, DRAWS, seed, &found), DIG_OK);
             alarms[1] += found.significant ? 1 : 0;
         }
     }

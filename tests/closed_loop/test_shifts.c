@@ -20,8 +20,7 @@ static void make_batch(double place[DIG_AXES])
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
 }
 
 static void fill(const struct dig_hypothesis *const hypothesis, const double number[],
@@ -29,8 +28,8 @@ static void fill(const struct dig_hypothesis *const hypothesis, const double num
 {
     const struct dig_plain plain = dig_plain_of(soil, batch.group[0].trajectory, number);
     double                 added[DIG_FEATURES];
-    (void)dig_forward_added(&batch, 0, soil, &plain, hypothesis, number, added);
-    dig_shifts_fill(&batch, 0, soil, hypothesis, number, &plain, added, shifts);
+    (void)dig_forward_added(&batch, 0, &plain, hypothesis, number, added);
+    dig_shifts_fill(&batch, 0, hypothesis, number, &plain, added, shifts);
 }
 
 // How large a shift is beside a dig, rms over the amplitude.
@@ -53,7 +52,7 @@ TEST(a_plain_gravel_is_off_along_its_axes_alone)
     make_batch(number);
     fill(&plain, number, &shifts);
     assert_int_equal(shifts.shifts, DIG_AXES);
-    dig_shifts_common(&batch, soil, &plain, number, sigma);
+    dig_shifts_common(&batch, &plain, number, sigma);
     for (size_t a = 0; a < DIG_AXES; a++) {
         assert_true(size_of(shifts.of[a]) > 0.0);
         assert_true(fabs(sigma[a]) <= 0.0);
@@ -98,7 +97,7 @@ TEST(an_effect_is_off_by_what_it_adds)
         assert_int_equal(shifts.shifts, 2 * DIG_AXES + 1);
         size[i] = size_of(shifts.of[DIG_AXES]);
         of_u[i] = size_of(shifts.of[2 * DIG_AXES]);
-        dig_shifts_common(&batch, soil, &slope, number, sigma[i]);
+        dig_shifts_common(&batch, &slope, number, sigma[i]);
     }
     // Twice as much ground that slopes is as off twice, nearly: by the gravel, and by the angle.
     assert_close(size[1] / size[0], 2.0, 0.6);

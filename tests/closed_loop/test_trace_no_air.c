@@ -33,12 +33,11 @@ static struct dig_trace_work work(const size_t digs)
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, digs, measured, take, place, &batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, digs, measured, take, place, &batch), DIG_OK);
     memset(&search, 0, sizeof search);
     search.significant = true;
-    dig_hypothesis_fit(&batch, soil, &plain, middle, DIG_FIT_THOROUGH, &search.plain);
-    dig_hypothesis_fit(&batch, soil, &layer, middle, DIG_FIT_THOROUGH, &search.chosen);
+    dig_hypothesis_fit(&batch, &plain, middle, DIG_FIT_THOROUGH, &search.plain);
+    dig_hypothesis_fit(&batch, &layer, middle, DIG_FIT_THOROUGH, &search.chosen);
     air = (struct dig_machine_finding){ .p_complete = 1.0, .no_air = true };
     return (struct dig_trace_work){ .soil = soil, .batch = &batch, .search = &search, .air = &air };
 }

@@ -50,14 +50,13 @@ static double correct(const double magnitude[2], const enum made_trajectory alon
     }
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
     struct dig_fitted plain = { .hypothesis = { .effects = 0 } };
     memcpy(plain.number, place, sizeof place);
     for (size_t g = 0; g < batch->groups; g++) {
         plain.noise[g] = 0.1;
     }
-    dig_unlisted_correct(batch, soil, &plain, &share);
+    dig_unlisted_correct(batch, &plain, &share);
     double sum = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         sum += pow((double)share.share[along][DIG_CHANNEL_MY_Nm][k], 2.0) / DIG_CURVE_POINTS;

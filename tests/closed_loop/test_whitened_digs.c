@@ -24,8 +24,7 @@ static struct dig_whitened_digs *batch_of(struct dig_measured    measured[DIGS],
     }
     struct dig_whitened_digs *batch = malloc(sizeof *batch);
     dig_response_surface_place(world.surface, &gravel, place);
-    *status =
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch);
+    *status = dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch);
     return batch;
 }
 
@@ -65,9 +64,8 @@ TEST(what_the_machine_adds_is_taken_off)
     double                    place[DIG_AXES];
     struct dig_whitened_digs *off = malloc(sizeof *off);
     dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, off),
-        DIG_OK);
+    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, off),
+                     DIG_OK);
     for (size_t k = 0; k < DIG_FEATURES; k++) {
         assert_close(off->group[0].mean[k], plain->group[0].mean[k], 1e-3);
     }
@@ -87,7 +85,7 @@ TEST(what_approaches_add_is_shared)
     struct dig_fitted                  without;
     struct dig_fitted                  with;
     struct dig_whitened_digs          *batch = batch_of(measured, &status);
-    dig_hypothesis_fit(batch, soil, &plain, start, DIG_FIT_BARE, &without);
+    dig_hypothesis_fit(batch, &plain, start, DIG_FIT_BARE, &without);
     assert_close(batch->group[0].added_noise, 0.0, 0.0);
     for (size_t i = 0; i < 4; i += 2) {
         measured[i].added.noise = 0.5;
@@ -100,12 +98,11 @@ TEST(what_approaches_add_is_shared)
     double place[DIG_AXES];
     dig_response_surface_place(world.surface, &gravel, place);
     assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, place, batch),
-        DIG_OK);
+        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
     assert_close(batch->group[0].added_noise, 0.5 / 225.0, 1e-12);
     assert_close(batch->group[0].added_error[3], 0.3 / 15.0, 1e-12);
     assert_close(batch->group[0].added_error[DIG_FEATURE_BINS], 0.0, 0.0);
-    dig_hypothesis_fit(batch, soil, &plain, start, DIG_FIT_BARE, &with);
+    dig_hypothesis_fit(batch, &plain, start, DIG_FIT_BARE, &with);
     assert_close(without.approaches[0], 0.0, 0.0);
     assert_close(with.noise[0] - with.approaches[0], without.noise[0], 0.02 * without.noise[0]);
     assert_true(with.noise[0] > without.noise[0] + 1.5 * 0.5 / 225.0); // and the share of it
@@ -154,19 +151,16 @@ TEST(only_what_all_digs_have_is_compared)
     memset(take, true, sizeof take);
     measured[0].last        = 0.75;
     measured[2].measured[1] = false;
-    assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
-        DIG_OK);
+    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, batch),
+                     DIG_OK);
     assert_int_equal(batch->group[0].features, 2 * 7);
     assert_int_equal(batch->group[1].features, DIG_FEATURES);
     measured[0].last = 0.1;
-    assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
-        DIG_ENOMATCH);
+    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, batch),
+                     DIG_ENOMATCH);
     memset(take, false, sizeof take);
-    assert_int_equal(
-        dig_whitened_digs_make(world.surface, world.scatter, DIGS, measured, take, NULL, batch),
-        DIG_ENOMATCH);
+    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, batch),
+                     DIG_ENOMATCH);
     free(batch);
     free(measured);
 }
