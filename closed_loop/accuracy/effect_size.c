@@ -5,7 +5,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -38,13 +37,9 @@ static void weigh(const struct dig_curve_set *const           set,
     }
 }
 
-// What of a dig's moment: what the machine adds to it, or what is left without that.
-enum part { ADDED, DUG };
-
-// The mean of that over a group's digs, and where all of them were measured.
-static void mean_of(const struct dig_whitened_digs *const batch,
-                    const struct dig_measured measured[], const size_t g, const enum part part,
-                    double mean_Nm[POINTS], double *const first, double *const last)
+// The mean over a group's digs of what each one's moment has, and where all of them were measured.
+static void mean_of(const struct dig_whitened_digs *const batch, const double moment_Nm[][POINTS],
+                    const size_t g, double mean_Nm[POINTS], double *const first, double *const last)
 {
     memset(mean_Nm, 0, POINTS * sizeof mean_Nm[0]);
     *first = 0.0;
@@ -53,14 +48,11 @@ static void mean_of(const struct dig_whitened_digs *const batch,
         if (batch->dig[i].group != g) {
             continue;
         }
-        const struct dig_measured *const dig = &measured[batch->dig[i].measured];
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
         *first                               = fmax(*first, dig->first);
         *last                                = fmin(*last, dig->last);
         for (size_t p = 0; p < POINTS; p++) {
-            const double added_Nm = dig->machine[DIG_CHANNEL_MY_Nm][p * EVERY];
-            const double own_Nm =
-                part == ADDED ? added_Nm : dig->value[DIG_CHANNEL_MY_Nm][p * EVERY] - added_Nm;
-            mean_Nm[p] += own_Nm / (double)batch->group[g].digs;
+            mean_Nm[p] += moment_Nm[i][p] / (double)batch->group[g].digs;
         }
     }
 }
@@ -123,11 +115,10 @@ static void begin_group(struct moments *const m, const struct dig_fitted *const 
     }
 }
 
-double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
-                                  const struct dig_fitted *const        fitted,
-                                  const struct dig_measured             measured[])
+// The size of what is added to the moments of the batch's digs.
+static double size_of(const struct dig_whitened_digs *const batch,
+                      const struct dig_fitted *const fitted, const double added_Nm[][POINTS])
 {
-    assert(batch != NULL && fitted != NULL && measured != NULL);
     struct moments m     = { .batch = batch };
     double         floor = 0.0;
     double         added = 0.0;
@@ -135,7 +126,7 @@ double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         double first;
         double last;
-        mean_of(batch, measured, g, ADDED, m.target_Nm[g], &first, &last);
+        mean_of(batch, added_Nm, g, m.target_Nm[g], &first, &last);
         begin_group(&m, fitted, g, first, last, &floor);
         dig_response_surface_curve(batch->soil->surface, batch->group[g].trajectory, fitted->number,
                                    curve);
@@ -147,16 +138,38 @@ double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
     return added > 0.0 && floor > 0.0 ? sqrt(least_left(&m, fitted->number) / floor) : 0.0;
 }
 
+double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
+                                  const struct dig_fitted *const        fitted,
+                                  const double machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+{
+    assert(batch != NULL && fitted != NULL && machine != NULL);
+    double added_Nm[DIG_MEASURED_MAX][POINTS];
+    for (size_t i = 0; i < batch->digs; i++) {
+        for (size_t p = 0; p < POINTS; p++) {
+            added_Nm[i][p] = machine[batch->dig[i].measured][DIG_CHANNEL_MY_Nm][p * EVERY];
+        }
+    }
+    return size_of(batch, fitted, (const double(*)[POINTS])added_Nm);
+}
+
 double dig_effect_size_left(const struct dig_whitened_digs *const batch,
                             const struct dig_fitted *const        fitted)
 {
     assert(batch != NULL && fitted != NULL);
     struct moments m     = { .batch = batch };
     double         floor = 0.0;
+    double         dug_Nm[DIG_MEASURED_MAX][POINTS];
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+        for (size_t p = 0; p < POINTS; p++) {
+            dug_Nm[i][p] = dig->value[DIG_CHANNEL_MY_Nm][p * EVERY] -
+                           dig->machine[DIG_CHANNEL_MY_Nm][p * EVERY];
+        }
+    }
     for (size_t g = 0; g < batch->groups; g++) {
         double first;
         double last;
-        mean_of(batch, batch->measured, g, DUG, m.target_Nm[g], &first, &last);
+        mean_of(batch, (const double(*)[POINTS])dug_Nm, g, m.target_Nm[g], &first, &last);
         begin_group(&m, fitted, g, first, last, &floor);
     }
     return floor > 0.0 ? sqrt(fmax(least_left(&m, fitted->number) / floor - 1.0, 0.0)) : 0.0;
@@ -179,32 +192,26 @@ static struct dig_fitted leave_out(const struct dig_fitted *const chosen, const 
     return less;
 }
 
-enum dig_status dig_effect_size_of_soil(const struct dig_whitened_digs *const batch,
-                                        const struct dig_fitted *const chosen, const size_t e,
-                                        const double noise[], double *const size)
+double dig_effect_size_of_soil(const struct dig_whitened_digs *const batch,
+                               const struct dig_fitted *const chosen, const size_t e,
+                               const double noise[])
 {
-    assert(batch != NULL && chosen != NULL && noise != NULL && size != NULL);
-    struct dig_measured *const added = calloc(DIG_MEASURED_MAX, sizeof *added);
-    if (added == NULL) {
-        return DIG_ENOMEM;
-    }
+    assert(batch != NULL && chosen != NULL && noise != NULL);
+    double            added_Nm[DIG_MEASURED_MAX][POINTS];
     struct dig_fitted less = leave_out(chosen, e);
     memcpy(less.noise, noise, sizeof less.noise);
     for (size_t i = 0; i < batch->digs; i++) {
-        const size_t m = batch->dig[i].measured;
-        double       with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double       without[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        added[m] = batch->measured[m];
-        dig_fitted_curve(batch->soil, chosen, &added[m], with);
-        dig_fitted_curve(batch->soil, &less, &added[m], without);
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            added[m].machine[DIG_CHANNEL_MY_Nm][k] =
-                with[DIG_CHANNEL_MY_Nm][k] - without[DIG_CHANNEL_MY_Nm][k];
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+        double                           with[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double                           without[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_fitted_curve(batch->soil, chosen, dig, with);
+        dig_fitted_curve(batch->soil, &less, dig, without);
+        for (size_t p = 0; p < POINTS; p++) {
+            added_Nm[i][p] =
+                with[DIG_CHANNEL_MY_Nm][p * EVERY] - without[DIG_CHANNEL_MY_Nm][p * EVERY];
         }
     }
-    *size = dig_effect_size_of_machine(batch, &less, added);
-    free(added);
-    return DIG_OK;
+    return size_of(batch, &less, (const double(*)[POINTS])added_Nm);
 }
 
 double dig_effect_size_chance(const double size)

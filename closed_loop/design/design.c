@@ -6,7 +6,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct dig_design_settings dig_design_settings_default(void)
@@ -120,13 +119,9 @@ static enum dig_status weigh_all(const struct dig_design_table *const table,
                                  struct dig_design *const             design)
 {
     const struct dig_curve_set *const set = table->surface->set;
-    double(*const normal)[DIG_DESIGN_PLACES_MAX][DIG_AXES * DIG_AXES] =
-        calloc(DIG_TRAJECTORY_MAX, sizeof *normal);
-    if (normal == NULL) {
-        return DIG_ENOMEM;
-    }
-    enum dig_status status = DIG_OK;
-    design->digs           = set->trajectories;
+    double normal[DIG_TRAJECTORY_MAX][DIG_DESIGN_PLACES_MAX][DIG_AXES * DIG_AXES] = { { { 0.0 } } };
+    enum dig_status status                                                        = DIG_OK;
+    design->digs = set->trajectories;
     for (size_t t = 0; t < set->trajectories && status == DIG_OK; t++) {
         struct dig_design_dig *const dig = &design->dig[t];
         dig->known                       = table->surface->known[t];
@@ -144,7 +139,6 @@ static enum dig_status weigh_all(const struct dig_design_table *const table,
         find_partners(design, table->places, normal);
         status = rank(set, design);
     }
-    free(normal);
     return status;
 }
 
@@ -155,19 +149,15 @@ enum dig_status dig_design_run(const struct dig_response_surface *const surface,
                                struct dig_design *const                 design)
 {
     assert(surface != NULL && scatter != NULL && settings != NULL && design != NULL);
-    struct dig_design_table  table  = { .surface = surface, .scatter = scatter, .soil = soil };
-    struct dig_design *const d      = calloc(1, sizeof *d);
-    enum dig_status          status = d != NULL ? DIG_OK : DIG_ENOMEM;
+    struct dig_design_table table = { .surface = surface, .scatter = scatter, .soil = soil };
+    struct dig_design       made  = { .digs = 0 };
     make_places(&table);
+    enum dig_status status = weigh_all(&table, &made);
     if (status == DIG_OK) {
-        status = weigh_all(&table, d);
+        status = dig_design_simulate(&table, settings, &made);
     }
     if (status == DIG_OK) {
-        status = dig_design_simulate(&table, settings, d);
+        *design = made;
     }
-    if (status == DIG_OK) {
-        *design = *d;
-    }
-    free(d);
     return status;
 }

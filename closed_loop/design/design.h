@@ -65,8 +65,8 @@ struct dig_design_settings {
 
 struct dig_design_settings dig_design_settings_default(void);
 
-/// Computes it in a second or two. soil NULL: nothing about effects. DIG_EINVAL: no simple
-/// trajectory; DIG_ENOMEM. Writes *design on success only.
+/// Computes it in a second or two, on 1 MB of stack. soil NULL: nothing about effects. DIG_EINVAL:
+/// no simple trajectory; DIG_ENOMEM. Writes *design on success only.
 DIG_MUST_CHECK enum dig_status dig_design_run(const struct dig_response_surface *surface,
                                               const struct dig_scatter          *scatter,
                                               const struct dig_soil             *soil,

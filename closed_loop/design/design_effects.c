@@ -5,7 +5,6 @@
 #include "estimator/effects/effect.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double magnitude  = 0.5; // of an effect, of the largest in the table of effects
@@ -101,21 +100,17 @@ enum dig_status dig_design_effects(const struct dig_design_table *const table, c
         dig->tells[e] = !dig_effect_is_by_dig((enum dig_effect_id)e) &&
                         dig_soil_knows(table->soil, (enum dig_effect_id)e, t);
     }
-    struct sigmas *const s = calloc(1, sizeof *s);
-    if (s == NULL) {
-        return DIG_ENOMEM;
-    }
+    struct sigmas   s;
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < table->places && status == DIG_OK; i++) {
         struct dig_design_view v;
         status = dig_design_look(table, t, table->place[i], DIG_DESIGN_WRENCH, &v);
         if (status == DIG_OK) {
-            weigh_place(table, t, i, &v, dig, s);
+            weigh_place(table, t, i, &v, dig, &s);
         }
     }
     if (status == DIG_OK) {
-        take_medians(table->places, s, dig);
+        take_medians(table->places, &s, dig);
     }
-    free(s);
     return status;
 }

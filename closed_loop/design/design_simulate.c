@@ -221,10 +221,10 @@ enum dig_status dig_design_simulate(const struct dig_design_table *const    tabl
 {
     const struct dig_response_surface *const surface = table->surface;
     assert(design->ranked > 0 && settings->draws > 0);
-    const size_t       digs   = design->digs;
-    struct node *const node   = calloc(GRID, sizeof *node);
-    double *const      square = calloc(settings->draws * digs, sizeof *square);
-    enum dig_status    status = node != NULL && square != NULL ? DIG_OK : DIG_ENOMEM;
+    const size_t    digs = design->digs;
+    struct node     node[GRID];
+    double *const   square = calloc(settings->draws * digs, sizeof *square);
+    enum dig_status status = square != NULL ? DIG_OK : DIG_ENOMEM;
     for (size_t t = 0; t < digs && status == DIG_OK; t++) {
         struct dig_design_dig *const dig = &design->dig[t];
         if (!dig->known) {
@@ -246,7 +246,6 @@ enum dig_status dig_design_simulate(const struct dig_design_table *const    tabl
     if (status == DIG_OK) {
         finish_errors(design, square, settings->draws);
     }
-    free(node);
     free(square);
     return status;
 }

@@ -7,7 +7,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -255,27 +254,21 @@ static void set_interval(struct cloud *const c, const size_t j, struct dig_fitte
     fitted->high[j]         = fmax(leans_high ? c->high[j] : taken[last], fitted->number[j]);
 }
 
-enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *const batch,
-                                        const uint64_t seed, struct dig_fitted *const fitted,
-                                        double covariance[])
+void dig_posterior_intervals(const struct dig_whitened_digs *const batch, const uint64_t seed,
+                             struct dig_fitted *const fitted, double covariance[])
 {
     assert(batch != NULL && fitted != NULL);
-    struct cloud *const c = calloc(1, sizeof *c);
-    if (c == NULL) {
-        return DIG_ENOMEM;
-    }
-    dig_likelihood_init(&c->likelihood, batch, &fitted->hypothesis);
-    dig_likelihood_weigh(&c->likelihood, fitted->number);
-    dig_hypothesis_bounds(batch->soil, &fitted->hypothesis, c->low, c->high);
-    dig_shifts_common(batch, &fitted->hypothesis, fitted->number, c->common);
-    c->reach = 2.4 / sqrt((double)c->likelihood.numbers);
-    anneal(c, seed);
-    for (size_t j = 0; j < c->likelihood.numbers; j++) {
-        set_interval(c, j, fitted);
+    struct cloud c = { .power = 0.0 };
+    dig_likelihood_init(&c.likelihood, batch, &fitted->hypothesis);
+    dig_likelihood_weigh(&c.likelihood, fitted->number);
+    dig_hypothesis_bounds(batch->soil, &fitted->hypothesis, c.low, c.high);
+    dig_shifts_common(batch, &fitted->hypothesis, fitted->number, c.common);
+    c.reach = 2.4 / sqrt((double)c.likelihood.numbers);
+    anneal(&c, seed);
+    for (size_t j = 0; j < c.likelihood.numbers; j++) {
+        set_interval(&c, j, fitted);
     }
     if (covariance != NULL) {
-        write_covariance(c, covariance);
+        write_covariance(&c, covariance);
     }
-    free(c);
-    return DIG_OK;
 }

@@ -14,9 +14,8 @@
 /// likelihood up to the posterior (sequential Monte Carlo: Del Moral, Doucet & Jasra 2006), by the
 /// covariance at the fit: a single walk stays in one arm of a bent ridge. Writes the covariance of
 /// z of the batch's steps, [steps * steps], with what the numbers leave open, where covariance is
-/// not NULL. Some hundredths of a second. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_posterior_intervals(const struct dig_whitened_digs *batch,
-                                                       uint64_t seed, struct dig_fitted *fitted,
-                                                       double covariance[]);
+/// not NULL. Some hundredths of a second.
+void dig_posterior_intervals(const struct dig_whitened_digs *batch, uint64_t seed,
+                             struct dig_fitted *fitted, double covariance[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_POSTERIOR_H

@@ -86,10 +86,9 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
         if (!dig_effect_is_of_machine(id)) {
             continue;
         }
-        double                value[DIG_MODEL_PARAMETERS_MAX];
-        const enum dig_status status = dig_effect_values(&effect[e], value);
-        if (status != DIG_OK) {
-            return status;
+        double value[DIG_MODEL_PARAMETERS_MAX];
+        if (dig_effect_values(&effect[e], value) != DIG_OK) {
+            return DIG_ENOMATCH;
         }
         if (id == DIG_EFFECT_PAYLOAD) {
             carry(side, value, dig, &sum.payload);
@@ -103,34 +102,30 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
 
 enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side,
                                        const size_t effects, const struct dig_model_effect effect[],
-                                       const enum dig_apply apply, struct dig_measured measured[])
+                                       const enum dig_apply      apply,
+                                       const struct dig_measured measured[],
+                                       double machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
-    assert(side != NULL && (side->digs == 0 || measured != NULL));
-    struct dig_measured *const corrected = malloc(sizeof *corrected);
-    if (corrected == NULL) {
-        return DIG_ENOMEM;
-    }
+    assert(side != NULL && (side->digs == 0 || (measured != NULL && machine != NULL)));
     enum dig_status status = DIG_OK;
     for (size_t d = 0; d < side->digs && status == DIG_OK; d++) {
         struct dig_correction correction;
+        struct dig_measured   corrected = measured[d];
         if (apply != DIG_APPLY_TO_ALL && measured[d].use == DIG_USE_HOLDOUT) {
             continue;
         }
         status = correction_of(side, effects, effect, d, &correction);
         if (status == DIG_OK) {
-            *corrected = measured[d];
-            status     = dig_machine_dig_measure(
-                    &side->machine, side->set, &side->dig[d], &correction,
-                apply == DIG_APPLY_ROUGHLY ? DIG_MEASURE_ROUGHLY : DIG_MEASURE_VALUES, corrected);
+            status = dig_machine_dig_measure(
+                &side->machine, side->set, &side->dig[d], &correction,
+                apply == DIG_APPLY_ROUGHLY ? DIG_MEASURE_ROUGHLY : DIG_MEASURE_VALUES, &corrected);
         }
         for (int c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
-            const bool both = measured[d].measured[c] && corrected->measured[c];
+            const bool both = measured[d].measured[c] && corrected.measured[c];
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                measured[d].machine[c][k] =
-                    both ? measured[d].value[c][k] - corrected->value[c][k] : 0.0;
+                machine[d][c][k] = both ? measured[d].value[c][k] - corrected.value[c][k] : 0.0;
             }
         }
     }
-    free(corrected);
     return status;
 }

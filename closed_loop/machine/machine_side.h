@@ -72,12 +72,15 @@ DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *s
 /// differences of two such.
 enum dig_apply { DIG_APPLY_TO_ALL, DIG_APPLY_TO_FITTED, DIG_APPLY_ROUGHLY };
 
-/// Writes into measured[].machine what these effects (those of the machine among them) add to the
-/// measured curves; a payload, in a dig that was traced in, as much as that dig's was.
-DIG_MUST_CHECK enum dig_status dig_machine_side_apply(const struct dig_machine_side *side,
-                                                      size_t                         effects,
-                                                      const struct dig_model_effect  effect[],
-                                                      enum dig_apply                 apply,
-                                                      struct dig_measured            measured[]);
+/// Writes into machine[], by dig, what these effects (those of the machine among them) add to the
+/// measured curves; a payload, in a dig that was traced in, as much as that dig's was. Of a dig
+/// that they are not applied to nothing is written. DIG_ENOMATCH: a dig is not told with them (a
+/// cylinder at its stop, a bucket off its path, a value beyond its range); what was written by then
+/// is of no use. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status
+dig_machine_side_apply(const struct dig_machine_side *side, size_t effects,
+                       const struct dig_model_effect effect[], enum dig_apply apply,
+                       const struct dig_measured measured[],
+                       double                    machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H

@@ -1,7 +1,6 @@
 #include "closed_loop/search/cross_validation.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
 static bool is_possible(const struct dig_whitened_digs *const batch,
                         const struct dig_hypothesis *const    hypothesis)
@@ -32,23 +31,18 @@ static double miss2(const struct dig_whitened_digs *const batch,
     return sum;
 }
 
-enum dig_status dig_cross_validation_gain(const struct dig_whitened_digs *const batch,
-                                          const struct dig_fitted *const        plain,
-                                          const struct dig_fitted *const chosen, double *const gain)
+double dig_cross_validation_gain(const struct dig_whitened_digs *const batch,
+                                 const struct dig_fitted *const        plain,
+                                 const struct dig_fitted *const        chosen)
 {
-    assert(batch != NULL && plain != NULL && chosen != NULL && gain != NULL);
-    struct dig_whitened_digs *const others = malloc(sizeof *others);
-    if (others == NULL) {
-        return DIG_ENOMEM;
-    }
-    double sum = 0.0;
+    assert(batch != NULL && plain != NULL && chosen != NULL);
+    struct dig_whitened_digs others;
+    double                   sum = 0.0;
     for (size_t i = 0; i < batch->digs && batch->digs > 1; i++) {
-        dig_whitened_digs_leave_out(batch, i, others);
-        if (is_possible(others, &chosen->hypothesis)) {
-            sum += miss2(batch, others, i, plain) - miss2(batch, others, i, chosen);
+        dig_whitened_digs_leave_out(batch, i, &others);
+        if (is_possible(&others, &chosen->hypothesis)) {
+            sum += miss2(batch, &others, i, plain) - miss2(batch, &others, i, chosen);
         }
     }
-    free(others);
-    *gain = sum;
-    return DIG_OK;
+    return sum;
 }

@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { AT_A_TIME = 25 }; // draws after which is asked whether more would change the answer
@@ -176,28 +175,21 @@ static bool is_answered(const struct dig_null_question *const   asked,
     return p > far * asked->level || p < asked->level / (far * far);
 }
 
-enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
-                                         const struct dig_fitted *const fitted, const size_t rivals,
-                                         const struct dig_hypothesis rival[], const size_t draws,
-                                         const struct dig_null_question *const asked,
-                                         uint64_t *const                       seed,
-                                         struct dig_null_simulation *const     null)
+struct dig_null_simulation
+dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
+                         const struct dig_fitted *const fitted, const size_t rivals,
+                         const struct dig_hypothesis rival[], const size_t draws,
+                         const struct dig_null_question *const asked, uint64_t *const seed)
 {
     assert(draws > 1 && rivals <= DIG_RIVALS_MAX);
-    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
-    struct dig_fitted *const        again = malloc((rivals + 1) * sizeof *again);
-    if (drawn == NULL || again == NULL) {
-        free(drawn);
-        free(again);
-        return DIG_ENOMEM;
-    }
-    *drawn                                = *batch;
+    struct dig_whitened_digs   drawn = *batch;
+    struct dig_fitted          again[DIG_RIVALS_MAX + 1];
     struct dig_null_simulation made       = { .draws = 0 };
     double                     squares[3] = { 0.0 };
     while (made.draws < draws && !is_answered(asked, &made)) {
         struct dig_statistic s;
-        dig_null_simulation_digs(batch, fitted, seed, drawn);
-        dig_null_simulation_fit(drawn, &fitted->hypothesis, rivals, rival, fitted->number,
+        dig_null_simulation_digs(batch, fitted, seed, &drawn);
+        dig_null_simulation_fit(&drawn, &fitted->hypothesis, rivals, rival, fitted->number,
                                 DIG_FIT_BARE, again, &s);
         const double value[3] = { s.misfit, s.about, s.gain };
         made.draws++;
@@ -208,10 +200,7 @@ enum dig_status dig_null_simulation_draw(const struct dig_whitened_digs *const b
             made.variance[i] = squares[i] / fmax((double)made.draws - 1.0, 1.0);
         }
     }
-    free(drawn);
-    free(again);
-    *null = made;
-    return DIG_OK;
+    return made;
 }
 
 double dig_null_simulation_p(const struct dig_null_simulation *const null, const size_t index,

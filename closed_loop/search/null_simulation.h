@@ -47,12 +47,11 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *batch,
                               struct dig_whitened_digs *drawn);
 
 /// Draws from fitted and fits again, draws times, or fewer where they answer what is asked (may be
-/// NULL): the chance is far from the level. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status
+/// NULL): the chance is far from the level.
+struct dig_null_simulation
 dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
                          size_t rivals, const struct dig_hypothesis rival[], size_t draws,
-                         const struct dig_null_question *asked, uint64_t *seed,
-                         struct dig_null_simulation *null);
+                         const struct dig_null_question *asked, uint64_t *seed);
 
 /// What a fit leaves of the means: a statistic's misfit.
 double dig_null_simulation_left(const struct dig_whitened_digs *batch,

@@ -5,7 +5,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 enum { BOOTSTRAPS = 1000 };
 
@@ -66,31 +65,25 @@ static void draw_digs(const size_t digs, const double q[], uint64_t *const seed,
     dig_chance_interval(BOOTSTRAPS, drawn, &whiteness->low, &whiteness->high);
 }
 
-enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *const batch,
-                                      const struct dig_fitted *const fitted, const size_t draws,
-                                      uint64_t seed, struct dig_whiteness *const whiteness)
+struct dig_whiteness dig_portmanteau_judge(const struct dig_whitened_digs *const batch,
+                                           const struct dig_fitted *const        fitted,
+                                           const size_t draws, uint64_t seed)
 {
-    assert(batch != NULL && fitted != NULL && draws > 0 && whiteness != NULL);
-    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
-    if (drawn == NULL) {
-        return DIG_ENOMEM;
-    }
-    double               q[DIG_MEASURED_MAX];
-    struct dig_whiteness made = { .digs = batch->digs };
-    made.statistic            = all_digs(batch, fitted, q);
+    assert(batch != NULL && fitted != NULL && draws > 0);
+    double                   q[DIG_MEASURED_MAX];
+    double                   as_large = 0.0;
+    struct dig_whitened_digs drawn    = *batch;
+    struct dig_whiteness     made     = { .digs = batch->digs };
+    made.statistic                    = all_digs(batch, fitted, q);
     draw_digs(batch->digs, q, &seed, &made);
-    double as_large = 0.0;
-    *drawn          = *batch;
     for (size_t d = 0; d < draws; d++) {
         struct dig_fitted again;
-        dig_null_simulation_digs(batch, fitted, &seed, drawn);
-        dig_hypothesis_fit(drawn, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
-        const double mean = all_digs(drawn, &again, q);
+        dig_null_simulation_digs(batch, fitted, &seed, &drawn);
+        dig_hypothesis_fit(&drawn, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
+        const double mean = all_digs(&drawn, &again, q);
         made.expected += mean / (double)draws;
         as_large += mean >= made.statistic ? 1.0 : 0.0;
     }
     made.p = (as_large + 1.0) / ((double)draws + 1.0);
-    free(drawn);
-    *whiteness = made;
-    return DIG_OK;
+    return made;
 }

@@ -30,11 +30,9 @@ struct dig_whiteness {
 /// Q of one channel: n numbers, at most n - 1 lags; 0 for fewer than two.
 double dig_portmanteau(size_t n, const double z[]);
 
-/// Of a batch by a fitted hypothesis, against draws draws from it. Writes on success only.
-/// DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_portmanteau_judge(const struct dig_whitened_digs *batch,
-                                                     const struct dig_fitted *fitted, size_t draws,
-                                                     uint64_t              seed,
-                                                     struct dig_whiteness *whiteness);
+/// Of a batch by a fitted hypothesis, against draws draws from it.
+struct dig_whiteness dig_portmanteau_judge(const struct dig_whitened_digs *batch,
+                                           const struct dig_fitted *fitted, size_t draws,
+                                           uint64_t seed);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_PORTMANTEAU_H

@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -220,14 +219,15 @@ static void find_range(const struct room *const r, double *const first_m, double
     }
 }
 
-static void fit_all(struct room *const r, struct place place[PLACES_MAX],
-                    const struct dig_fitted *const plain, struct dig_rock *const rock)
+static void fit_all(struct room *const r, const struct dig_fitted *const plain,
+                    struct dig_rock *const rock)
 {
-    double first_m;
-    double last_m;
-    double most_squares[DIG_TRAJECTORY_MAX] = { 0.0 };
-    double misfit[PLACES_MAX];
-    size_t n = 0;
+    struct place place[PLACES_MAX];
+    double       first_m;
+    double       last_m;
+    double       most_squares[DIG_TRAJECTORY_MAX] = { 0.0 };
+    double       misfit[PLACES_MAX];
+    size_t       n = 0;
     find_range(r, &first_m, &last_m);
     const double tooth_m = r->batch->soil->surface->set->tooth_m;
     const double step_m  = fmax(step * tooth_m, (last_m - first_m) / (PLACES_MAX - 1));
@@ -257,28 +257,19 @@ static void fit_all(struct room *const r, struct place place[PLACES_MAX],
     rock->high_m += buried * tooth_m;
 }
 
-enum dig_status dig_rock_fit(const struct dig_whitened_digs *const batch,
-                             const struct dig_fitted *const plain, struct dig_rock *const rock)
+struct dig_rock dig_rock_fit(const struct dig_whitened_digs *const batch,
+                             const struct dig_fitted *const        plain)
 {
-    assert(batch != NULL && plain != NULL && rock != NULL);
-    *rock = (struct dig_rock){ .known = false };
+    assert(batch != NULL && plain != NULL);
+    struct dig_rock rock = { .known = false };
     if (!dig_hypothesis_possible(batch, DIG_EFFECT_OBSTACLE)) {
-        return DIG_OK;
+        return rock;
     }
-    struct room *const  r      = malloc(sizeof *r);
-    struct place *const place  = calloc(PLACES_MAX, sizeof *place);
-    enum dig_status     status = DIG_ENOMEM;
-    if (r != NULL && place != NULL) {
-        r->batch   = batch;
-        r->without = *batch;
-        for (size_t g = 0; g < batch->groups; g++) {
-            describe(r, g, &r->hump[g]);
-        }
-        fit_all(r, place, plain, rock);
-        rock->known = isfinite(rock->plain.misfit);
-        status      = DIG_OK;
+    struct room r = { .batch = batch, .without = *batch };
+    for (size_t g = 0; g < batch->groups; g++) {
+        describe(&r, g, &r.hump[g]);
     }
-    free(r);
-    free(place);
-    return status;
+    fit_all(&r, plain, &rock);
+    rock.known = isfinite(rock.plain.misfit);
+    return rock;
 }

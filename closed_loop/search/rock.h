@@ -23,8 +23,7 @@ struct dig_rock {
     double squares; // left of the means, with the noise that the plain hypothesis has alone
 };
 
-/// Fits it, starting from the plain hypothesis' fit. A tenth of a second. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_rock_fit(const struct dig_whitened_digs *batch,
-                                            const struct dig_fitted *plain, struct dig_rock *rock);
+/// Fits it, starting from the plain hypothesis' fit. A tenth of a second.
+struct dig_rock dig_rock_fit(const struct dig_whitened_digs *batch, const struct dig_fitted *plain);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_ROCK_H

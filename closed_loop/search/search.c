@@ -5,7 +5,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // What is significant and that nothing explains, with a name or without, is taken for chance unless
@@ -80,41 +79,29 @@ static double chance_of_either(const double p)
 
 // By the misfit, and by the gain where that could still change the answer: a draw that rivals are
 // fitted to costs as much as thirty that none are.
-static enum dig_status decide_whether(struct dig_search_work *const c)
+static void decide_whether(struct dig_search_work *const c)
 {
-    struct dig_statistic            statistic;
-    uint64_t                        seed  = c->seed;
-    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
-    if (drawn == NULL) {
-        return DIG_ENOMEM;
-    }
-    *drawn = *c->batch;
+    const struct dig_whitened_digs raw  = *c->batch;
+    uint64_t                       seed = c->seed;
+    struct dig_statistic           statistic;
     fit_all(c, &statistic);
     const struct dig_fitted plain = c->s->plain;
-    enum dig_status         status =
-        dig_null_simulation_draw(drawn, &plain, 0, NULL, c->draws, NULL, &c->seed, &c->plain_null);
-    if (status == DIG_OK) {
-        allow_for_scatter(c, &statistic);
-        const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
-        c->s->p_complete = chance_of_either(p);
-        if (!(c->s->p_complete < c->false_alarm)) {
-            const struct dig_null_question asked = { statistic.gain, c->false_alarm };
-            struct dig_null_simulation     gains;
-            status = dig_null_simulation_draw(drawn, &plain, c->s->rivals, c->single, c->draws,
-                                              &asked, &seed, &gains);
-            c->s->p_complete =
-                status == DIG_OK
-                    ? chance_of_either(fmin(p, dig_null_simulation_p(&gains, 2, statistic.gain)))
-                    : 1.0;
-        }
+    c->plain_null = dig_null_simulation_draw(&raw, &plain, 0, NULL, c->draws, NULL, &c->seed);
+    allow_for_scatter(c, &statistic);
+    const double p   = dig_null_simulation_p(&c->plain_null, 0, statistic.misfit);
+    c->s->p_complete = chance_of_either(p);
+    if (!(c->s->p_complete < c->false_alarm)) {
+        const struct dig_null_question   asked = { statistic.gain, c->false_alarm };
+        const struct dig_null_simulation gains = dig_null_simulation_draw(
+            &raw, &plain, c->s->rivals, c->single, c->draws, &asked, &seed);
+        c->s->p_complete =
+            chance_of_either(fmin(p, dig_null_simulation_p(&gains, 2, statistic.gain)));
     }
-    free(drawn);
     c->s->significant = c->s->p_complete < c->false_alarm;
     for (size_t i = 0; i < c->s->rivals; i++) {
         const double left  = dig_null_simulation_left(c->batch, &c->s->rival[i]);
         c->s->rival_fit[i] = dig_null_simulation_p(&c->plain_null, 0, left);
     }
-    return status;
 }
 
 // Resamples the digs of each trajectory.
@@ -135,30 +122,23 @@ static void resample(const struct dig_whitened_digs *const batch, uint64_t *cons
 }
 
 // How often each single effect is best when the campaign is drawn from its own digs.
-static enum dig_status bootstrap(struct dig_search_work *const c, const size_t times)
+static void bootstrap(struct dig_search_work *const c, const size_t times)
 {
-    struct dig_fitted               fitted[DIG_RIVALS_MAX + 1];
-    struct dig_whitened_digs *const drawn = malloc(sizeof *drawn);
-    if (drawn == NULL) {
-        return DIG_ENOMEM;
-    }
-    *drawn = *c->batch;
+    struct dig_fitted        fitted[DIG_RIVALS_MAX + 1];
+    struct dig_whitened_digs drawn = *c->batch;
     for (size_t i = 0; i < times; i++) {
         struct dig_statistic statistic;
-        resample(c->batch, &c->seed, drawn);
-        dig_null_simulation_fit(drawn, &c->s->plain.hypothesis, c->s->rivals, c->single,
+        resample(c->batch, &c->seed, &drawn);
+        dig_null_simulation_fit(&drawn, &c->s->plain.hypothesis, c->s->rivals, c->single,
                                 c->s->plain.number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < c->s->rivals) {
             c->s->inclusion[statistic.best] += 1.0 / (double)times;
         }
     }
-    free(drawn);
-    return DIG_OK;
 }
 
-enum dig_status dig_search_run(struct dig_whitened_digs *const batch, const double false_alarm,
-                               const size_t draws, const uint64_t seed,
-                               struct dig_search *const search)
+void dig_search_run(struct dig_whitened_digs *const batch, const double false_alarm,
+                    const size_t draws, const uint64_t seed, struct dig_search *const search)
 {
     assert(batch != NULL && search != NULL && draws >= 4);
     memset(search, 0, sizeof *search);
@@ -166,19 +146,14 @@ enum dig_status dig_search_run(struct dig_whitened_digs *const batch, const doub
     struct dig_search_work c = {
         .batch = batch, .false_alarm = false_alarm, .draws = draws, .seed = seed, .s = search
     };
-    search->rivals         = dig_search_rivals(batch, c.single);
-    enum dig_status status = decide_whether(&c);
-    search->chosen         = search->plain;
-    if (status != DIG_OK || !search->significant) {
-        return status;
+    search->rivals = dig_search_rivals(batch, c.single);
+    decide_whether(&c);
+    search->chosen = search->plain;
+    if (!search->significant) {
+        return;
     }
-    status = bootstrap(&c, draws / 4);
-    if (status == DIG_OK) {
-        status = dig_search_which(&c);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
+    bootstrap(&c, draws / 4);
+    dig_search_which(&c);
     search->outside = !search->is_rock && dig_search_is_outside(&c);
     if (search->unlisted && !search->is_rock && !search->outside &&
         search->without_name.functions == 0 &&
@@ -186,7 +161,7 @@ enum dig_status dig_search_run(struct dig_whitened_digs *const batch, const doub
         search->p_complete > rarer * false_alarm) {
         search->unlisted    = false;
         search->significant = false;
-        return DIG_OK;
+        return;
     }
     if (search->outside) {
         search->chosen   = search->beyond;
@@ -196,5 +171,4 @@ enum dig_status dig_search_run(struct dig_whitened_digs *const batch, const doub
         dig_search_find_set(&c);
     }
     dig_search_set_probabilities(&c);
-    return DIG_OK;
 }

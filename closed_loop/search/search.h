@@ -45,9 +45,8 @@ size_t dig_search_rivals(const struct dig_whitened_digs *batch,
                          struct dig_hypothesis           single[DIG_RIVALS_MAX]);
 
 /// Searches. The batch's amplitudes grow by spread when the campaign's digs scatter more than the
-/// table's. Some seconds. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_search_run(struct dig_whitened_digs *batch, double false_alarm,
-                                              size_t draws, uint64_t seed,
-                                              struct dig_search *search);
+/// table's. Some seconds.
+void dig_search_run(struct dig_whitened_digs *batch, double false_alarm, size_t draws,
+                    uint64_t seed, struct dig_search *search);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_H

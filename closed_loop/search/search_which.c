@@ -110,19 +110,14 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
 // The pair, where it leads the best single effect as no second effect does by chance (Ville), and
 // predicts digs left out better than that; where no dig can be left out for want of more, a second
 // effect is not confirmed and not named.
-static enum dig_status choose_pair(struct dig_search_work *const c, const size_t best,
-                                   const struct dig_fitted *const pair)
+static void choose_pair(struct dig_search_work *const c, const size_t best,
+                        const struct dig_fitted *const pair)
 {
     const double least = log((double)c->s->rivals / c->false_alarm);
-    double       gain  = 0.0;
-    c->s->chosen       = c->s->rival[best];
-    if (dig_search_evidence(c, pair, 0) <= c->s->log_evidence[best] + least) {
-        return DIG_OK;
-    }
-    const enum dig_status status =
-        dig_cross_validation_gain(c->batch, &c->s->rival[best], pair, &gain);
-    c->s->chosen = gain > 0.0 ? *pair : c->s->rival[best];
-    return status;
+    const bool   leads = dig_search_evidence(c, pair, 0) > c->s->log_evidence[best] + least;
+    const bool   better =
+        leads && dig_cross_validation_gain(c->batch, &c->s->rival[best], pair) > 0.0;
+    c->s->chosen = better ? *pair : c->s->rival[best];
 }
 
 // The gravel is the one beside something that may be anything: the plain one follows what is not
@@ -138,13 +133,13 @@ static void give_up(struct dig_search_work *const c)
 // What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must
 // explain half of what is left; another depth gives it another shape. Of the digs as the plain
 // hypothesis has the machine.
-static enum dig_status look_for_rock(struct dig_search_work *const         c,
-                                     const struct dig_whitened_digs *const settled)
+static void look_for_rock(struct dig_search_work *const         c,
+                          const struct dig_whitened_digs *const settled)
 {
-    struct dig_rock *const rock   = &c->s->rock;
-    const enum dig_status  status = dig_rock_fit(settled, &c->s->plain, rock);
-    if (status != DIG_OK || !rock->known) {
-        return status;
+    struct dig_rock *const rock = &c->s->rock;
+    *rock                       = dig_rock_fit(settled, &c->s->plain);
+    if (!rock->known) {
+        return;
     }
     struct dig_fitted plain;
     memcpy(rock->plain.z, c->s->plain.z, sizeof rock->plain.z);
@@ -162,36 +157,28 @@ static enum dig_status look_for_rock(struct dig_search_work *const         c,
     if (c->s->is_rock) {
         c->s->chosen = rock->plain;
     }
-    return status;
 }
 
-enum dig_status dig_search_which(struct dig_search_work *const c)
+void dig_search_which(struct dig_search_work *const c)
 {
     struct dig_whitened_digs settled = *c->batch;
     dig_steps_settle(&settled, c->s->plain.z);
-    enum dig_status status = dig_unlisted_find(&settled, &c->s->plain, &c->s->without_name);
-    if (status != DIG_OK) {
-        return status;
-    }
+    c->s->without_name = dig_unlisted_find(&settled, &c->s->plain);
     if (c->s->rivals == 0) {
         give_up(c);
-        return DIG_OK;
+        return;
     }
     const size_t best = dig_search_best_rival(c->s, NULL);
     c->s->chosen      = c->s->rival[best];
     struct dig_fitted pair;
     if (find_pair(c, &pair)) {
         fit_again(c, best, &pair);
-        status = choose_pair(c, best, &pair);
+        choose_pair(c, best, &pair);
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, 0);
-    if (status == DIG_OK) {
-        status = dig_cross_validation_gain(c->batch, &c->s->plain, &c->s->chosen, &c->s->confirmed);
-    }
-    if (status == DIG_OK &&
-        (c->s->confirmed < 0.0 || !is_believable(c, evidence) || drifts_otherwise(c))) {
+    c->s->confirmed       = dig_cross_validation_gain(c->batch, &c->s->plain, &c->s->chosen);
+    if (c->s->confirmed < 0.0 || !is_believable(c, evidence) || drifts_otherwise(c)) {
         give_up(c);
-        status = look_for_rock(c, &settled);
+        look_for_rock(c, &settled);
     }
-    return status;
 }

@@ -37,7 +37,7 @@ size_t dig_search_best_rival(const struct dig_search *s, const bool taken[]);
 double dig_search_best_evidence(const struct dig_search *s);
 
 /// Chooses one effect, two, or none that has a name: s->chosen, s->unlisted.
-DIG_MUST_CHECK enum dig_status dig_search_which(struct dig_search_work *c);
+void dig_search_which(struct dig_search_work *c);
 
 /// True when a gravel that the grid does not hold explains the digs at least as well as what was
 /// chosen.

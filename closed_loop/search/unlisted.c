@@ -7,22 +7,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum dig_status dig_unlisted_find(const struct dig_whitened_digs *const batch,
-                                  const struct dig_fitted *const        plain,
-                                  struct dig_unlisted *const            unlisted)
+struct dig_unlisted dig_unlisted_find(const struct dig_whitened_digs *const batch,
+                                      const struct dig_fitted *const        plain)
 {
-    assert(batch != NULL && plain != NULL && unlisted != NULL);
-    struct dig_regressed means;
-    struct dig_regressed digs;
-    enum dig_status      status = dig_regress(batch, plain, false, &means);
-    if (status == DIG_OK) {
-        status = dig_regress(batch, plain, true, &digs);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_unlisted found = { .log_evidence = means.log_evidence,
-                                  .functions    = means.functions };
+    assert(batch != NULL && plain != NULL);
+    const struct dig_regressed means = dig_regress(batch, plain, false);
+    const struct dig_regressed digs  = dig_regress(batch, plain, true);
+    struct dig_unlisted        found = { .log_evidence = means.log_evidence,
+                                         .functions    = means.functions };
     // What decides is what it was; where only that finds anything, it is also what is said.
     const struct dig_regressed *const said = digs.functions > 0 ? &digs : &means;
     for (size_t i = 0; i < said->functions; i++) {
@@ -30,8 +22,7 @@ enum dig_status dig_unlisted_find(const struct dig_whitened_digs *const batch,
         (void)snprintf(found.depends_on + used, sizeof found.depends_on - used, "%s%s",
                        i > 0 ? ", " : "", dig_basis_name(said->function[i]));
     }
-    *unlisted = found;
-    return DIG_OK;
+    return found;
 }
 
 // How much of a group's mean residual is more than its noise: 0 … 1.

@@ -19,10 +19,9 @@ struct dig_unlisted {
     char   depends_on[128]; // for people; "": nothing that was tried
 };
 
-/// Regresses what a fitted plain hypothesis leaves. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_unlisted_find(const struct dig_whitened_digs *batch,
-                                                 const struct dig_fitted        *plain,
-                                                 struct dig_unlisted            *unlisted);
+/// Regresses what a fitted plain hypothesis leaves.
+struct dig_unlisted dig_unlisted_find(const struct dig_whitened_digs *batch,
+                                      const struct dig_fitted        *plain);
 
 /// What to add to the fitted curves, as shares of the rms of the fitted plain curve of each
 /// channel. Trajectories without digs in the batch get none. *share is the caller's.

@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -241,39 +240,29 @@ static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i
     r->rows += group->features;
 }
 
-enum dig_status dig_regress(const struct dig_whitened_digs *const batch,
-                            const struct dig_fitted *const plain, const bool each,
-                            struct dig_regressed *const regressed)
+struct dig_regressed dig_regress(const struct dig_whitened_digs *const batch,
+                                 const struct dig_fitted *const plain, const bool each)
 {
-    assert(batch != NULL && plain != NULL && regressed != NULL);
-    struct regression *const r    = malloc(sizeof *r);
-    struct told *const       told = malloc(sizeof *told);
-    if (r == NULL || told == NULL) {
-        free(r);
-        free(told);
-        return DIG_ENOMEM;
-    }
-    enum dig_basis candidate[DIG_BASES];
-    const size_t   by_digs    = dig_basis_told(batch, candidate);
-    const size_t   candidates = each ? by_digs : COMMON; // which are the first
-    double         amplitude[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
+    assert(batch != NULL && plain != NULL);
+    struct regression r = { .rows = 0 };
+    struct told       told;
+    enum dig_basis    candidate[DIG_BASES];
+    const size_t      by_digs    = dig_basis_told(batch, candidate);
+    const size_t      candidates = each ? by_digs : COMMON; // which are the first
+    double            amplitude[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
     if (each) {
-        tell_digs(batch, told);
+        tell_digs(batch, &told);
     } else {
-        tell_nominal(batch, told);
+        tell_nominal(batch, &told);
     }
-    r->rows = 0;
     for (size_t g = 0; g < batch->groups; g++) {
-        fill_mean(batch, plain, g, &told->mean[g], amplitude[g], r);
+        fill_mean(batch, plain, g, &told.mean[g], amplitude[g], &r);
     }
     for (size_t i = 0; each && i < batch->digs; i++) {
         struct states less;
-        if (differ(batch, told, i, candidates, candidate, &less)) {
-            fill_dig(batch, i, &less, amplitude[batch->dig[i].group], r);
+        if (differ(batch, &told, i, candidates, candidate, &less)) {
+            fill_dig(batch, i, &less, amplitude[batch->dig[i].group], &r);
         }
     }
-    *regressed = choose(r, candidates, candidate);
-    free(r);
-    free(told);
-    return DIG_OK;
+    return choose(&r, candidates, candidate);
 }

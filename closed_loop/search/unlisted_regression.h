@@ -21,9 +21,8 @@ struct dig_regressed {
 /// the trajectory tells. each: and of how the digs of a trajectory differ from each other, on all
 /// functions that the digs tell, at the paces they were dug with. With more functions to choose
 /// from each must bring more evidence, by the log of their number over that of those of the
-/// trajectory: chance finds a function no more often. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_regress(const struct dig_whitened_digs *batch,
-                                           const struct dig_fitted *plain, bool each,
-                                           struct dig_regressed *regressed);
+/// trajectory: chance finds a function no more often.
+struct dig_regressed dig_regress(const struct dig_whitened_digs *batch,
+                                 const struct dig_fitted *plain, bool each);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_UNLISTED_REGRESSION_H

@@ -15,7 +15,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // What has no name, of the machine or of the soil, is the answer only where it leads by so much log
@@ -36,22 +35,16 @@ struct choice {
     double                    of[DIG_MACHINE_ANSWERS]; // evidence of each
 };
 
-struct scratch {
-    struct dig_whitened_digs batch;
-    struct dig_steps         steps;
-};
-
 // The raw batch with what measured[].machine adds taken off: in the same units, so that the digs'
 // evidence of one answer compares with that of another.
 static void take_off_batch(const struct dig_whitened_digs *const raw,
-                           const struct dig_measured             measured[],
                            struct dig_whitened_digs *const       batch)
 {
     *batch = *raw;
     for (size_t i = 0; i < raw->digs; i++) {
         double feature[DIG_FEATURES];
         double added[DIG_FEATURES];
-        dig_features_of(measured[raw->dig[i].measured].machine, feature);
+        dig_features_of(raw->measured[raw->dig[i].measured].machine, feature);
         dig_whitened_digs_whiten(&raw->group[raw->dig[i].group], feature, added);
         for (size_t k = 0; k < DIG_FEATURES; k++) {
             batch->dig[i].y[k] -= added[k];
@@ -90,13 +83,6 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
     return -0.5 * misfit;
 }
 
-// Where a dig is not told with an answer (a cylinder at its stop, a bucket off its path) it is no
-// answer.
-static bool is_no_answer(const enum dig_status status)
-{
-    return status == DIG_ENOMATCH || status == DIG_EINVAL;
-}
-
 static void keep_best(const struct dig_machine_answer *const answer, const size_t from,
                       const double evidence, const double z[], struct choice *const choice)
 {
@@ -108,37 +94,27 @@ static void keep_best(const struct dig_machine_answer *const answer, const size_
     }
 }
 
-// Leaves in measured[].machine what these effects add.
-static enum dig_status apply(const struct dig_trace_work *const w, const size_t effects,
-                             const struct dig_model_effect effect[])
-{
-    return dig_machine_side_apply(w->machine, effects, effect, DIG_APPLY_TO_ALL, w->measured);
-}
-
-// One answer: with free air's own values, or with what the digs make of what it leaves open.
+// One answer: with free air's own values, or with what the digs make of what it leaves open. Where
+// a dig is not told with it, it is none.
 static enum dig_status weigh(const struct dig_trace_work *const w, const size_t from,
                              struct choice *const choice)
 {
     static const double       none[DIG_STEPS_MAX] = { 0.0 };
     struct dig_machine_answer answer              = w->air->answer[from];
-    struct scratch *const     scratch             = malloc(sizeof *scratch);
+    struct dig_whitened_digs  batch;
+    struct dig_steps          steps;
     struct dig_fitted         soil;
-    if (scratch == NULL) {
-        return DIG_ENOMEM;
-    }
-    const enum dig_status status = answer.wide ? dig_machine_steps_make(w, &answer, &scratch->steps)
-                                               : apply(w, answer.effects, answer.effect);
+    const enum dig_status     status = answer.wide ? dig_machine_steps_make(w, &answer, &steps)
+                                                   : dig_trace_apply(w, answer.effects, answer.effect);
     if (status == DIG_OK) {
-        take_off_batch(w->batch, w->measured, &scratch->batch);
-        scratch->batch.steps = answer.wide ? &scratch->steps : NULL;
-        const double evidence =
-            answer.log_evidence + soil_evidence(&scratch->batch, &soil) - choice->soil0;
+        take_off_batch(w->batch, &batch);
+        batch.steps           = answer.wide ? &steps : NULL;
+        const double evidence = answer.log_evidence + soil_evidence(&batch, &soil) - choice->soil0;
         const double *const z = answer.wide ? soil.z : none;
         dig_machine_steps_values(z, NULL, &answer);
         keep_best(&answer, from, evidence, z, choice);
     }
-    free(scratch);
-    return is_no_answer(status) ? DIG_OK : status;
+    return status == DIG_ENOMATCH ? DIG_OK : status;
 }
 
 // Single effects that free air and the digs cannot tell from the one chosen.
@@ -274,59 +250,56 @@ static enum dig_status choose(struct dig_trace_work *const w, struct choice *con
 static enum dig_status weigh_in_soil(struct dig_trace_work *const   w,
                                      const struct dig_fitted *const plain)
 {
-    struct dig_measured *const alone = malloc(w->digs * sizeof *alone);
-    if (alone == NULL) {
-        return DIG_ENOMEM;
-    }
+    double          machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     enum dig_status status = DIG_OK;
-    memcpy(alone, w->measured, w->digs * sizeof *alone);
     for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
         struct dig_model_effect *const effect = &w->air->effect[e];
 
-        status = dig_machine_side_apply(w->machine, 1, effect, DIG_APPLY_TO_FITTED, alone);
+        status = dig_machine_side_apply(w->machine, 1, effect, DIG_APPLY_TO_FITTED, w->measured,
+                                        machine);
         if (status == DIG_OK) {
-            w->size[e] = dig_effect_size_of_machine(w->batch, plain, alone);
+            w->size[e] = dig_effect_size_of_machine(
+                w->batch, plain, (const double(*)[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])machine);
             effect->probability *= fmax(dig_effect_size_chance(w->size[e]), DIG_TRACE_UNCONFIRMED);
         }
     }
-    free(alone);
     return status;
 }
 
-enum dig_status dig_trace_machine(struct dig_trace_work *const w, struct dig_fitted *const plain,
-                                  struct dig_error *const error)
+enum dig_status dig_trace_machine(struct dig_trace_work *const w, struct dig_error *const error)
 {
-    assert(w != NULL && w->machine != NULL && plain != NULL);
-    struct choice *const choice = calloc(1, sizeof *choice);
-    enum dig_status      status =
-        choice != NULL ? dig_machine_side_trace(w->machine, w->settings->false_alarm / 2.0,
-                                                     w->settings->seed, w->air)
-                            : DIG_ENOMEM;
+    assert(w != NULL && w->machine != NULL);
+    struct choice                choice = { .evidence = 0.0 };
+    struct dig_trace_open *const open   = w->open;
+    struct dig_fitted            plain;
+    enum dig_status status = dig_machine_side_trace(w->machine, w->settings->false_alarm / 2.0,
+                                                    w->settings->seed, w->air);
     if (status == DIG_OK && w->air->answers > 0) {
-        status = choose(w, choice);
+        status = choose(w, &choice);
     }
-    struct dig_trace_open *const open = w->open;
     if (status == DIG_OK && open->answer.numbers > 0) {
         status = dig_machine_steps_make(w, &open->answer, &open->steps);
     } else if (status == DIG_OK) {
-        status = apply(w, w->air->effects, w->air->effect);
+        status = dig_trace_apply(w, w->air->effects, w->air->effect);
     }
-    if (is_no_answer(status)) { // a holdout is not told with what the digs made of it
+    if (status == DIG_ENOMATCH) { // a holdout is not told with what the digs made of it
         write_none(true, w->air);
         open->answer.numbers = 0;
-        status               = apply(w, 0, NULL);
+        status               = dig_trace_apply(w, 0, NULL);
     }
     if (status == DIG_OK) {
-        status = dig_trace_batch(w, plain, error);
+        status = dig_trace_batch(w, &plain, error);
     }
-    if (status == DIG_OK && open->answer.numbers > 0) {
+    if (status != DIG_OK) {
+        return status;
+    }
+    if (open->answer.numbers > 0) {
         for (size_t k = 0; k < open->steps.steps; k++) {
-            open->steps.middle[k] = -choice->z[k];
+            open->steps.middle[k] = -choice.z[k];
         }
         w->batch->steps = &open->steps;
     }
-    free(choice);
-    return status == DIG_OK ? weigh_in_soil(w, plain) : status;
+    return weigh_in_soil(w, &plain);
 }
 
 enum dig_status dig_trace_settle_machine(struct dig_trace_work *const w, const double covariance[])
@@ -337,10 +310,10 @@ enum dig_status dig_trace_settle_machine(struct dig_trace_work *const w, const d
         return DIG_OK;
     }
     dig_machine_steps_values(w->search->chosen.z, covariance, &answer);
-    const enum dig_status status = apply(w, answer.effects, answer.effect);
-    if (is_no_answer(status)) { // a holdout is told with the values that were chosen alone
+    const enum dig_status status = dig_trace_apply(w, answer.effects, answer.effect);
+    if (status == DIG_ENOMATCH) { // a holdout is told with the values that were chosen alone
         memset(w->search->chosen.z, 0, sizeof w->search->chosen.z);
-        return apply(w, w->air->effects, w->air->effect);
+        return dig_trace_apply(w, w->air->effects, w->air->effect);
     }
     for (size_t e = 0; e < answer.effects; e++) {
         memcpy(w->air->effect[e].parameter, answer.effect[e].parameter,

@@ -12,7 +12,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 _Static_assert(DIG_MACHINE_NUMBERS <= DIG_STEPS_MAX, "every number of an answer is a step");
@@ -42,56 +41,43 @@ void dig_machine_steps_values(const double z[], const double covariance[],
     }
 }
 
-static void means_added(const struct dig_whitened_digs *const batch,
-                        const struct dig_measured measured[], double added[][DIG_FEATURES])
+enum dig_status dig_trace_apply(const struct dig_trace_work *const w, const size_t effects,
+                                const struct dig_model_effect effect[])
 {
+    double                machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    const enum dig_status status =
+        dig_machine_side_apply(w->machine, effects, effect, DIG_APPLY_TO_ALL, w->measured, machine);
+    for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
+        memcpy(w->measured[i].machine, machine[i], sizeof machine[i]);
+    }
+    return status;
+}
+
+// What the machine adds to the means at z, roughly: in differences it is enough.
+static enum dig_status added_at(const struct dig_trace_work *const     w,
+                                const struct dig_machine_answer *const answer, const double z[],
+                                double added[][DIG_FEATURES])
+{
+    double                    machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    struct dig_machine_answer there = *answer;
+    dig_machine_steps_values(z, NULL, &there);
+    const enum dig_status status = dig_machine_side_apply(w->machine, there.effects, there.effect,
+                                                          DIG_APPLY_ROUGHLY, w->measured, machine);
+    if (status != DIG_OK) {
+        return status;
+    }
     memset(added, 0, DIG_TRAJECTORY_MAX * sizeof added[0]);
-    for (size_t i = 0; i < batch->digs; i++) {
-        const struct dig_whitened_digs_group *const group = &batch->group[batch->dig[i].group];
-        double                                      feature[DIG_FEATURES];
-        dig_features_of(measured[batch->dig[i].measured].machine, feature);
+    for (size_t i = 0; i < w->batch->digs; i++) {
+        const struct dig_whitened_digs_group *const group =
+            &w->batch->group[w->batch->dig[i].group];
+        double feature[DIG_FEATURES];
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])machine[w->batch->dig[i].measured],
+                        feature);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             added[group->trajectory][f] += feature[f] / (double)group->digs;
         }
     }
-}
-
-// What the machine adds to the means at z.
-static enum dig_status added_at(const struct dig_trace_work *const     w,
-                                const struct dig_machine_answer *const answer, const double z[],
-                                const enum dig_apply apply, struct dig_measured measured[],
-                                double added[][DIG_FEATURES])
-{
-    struct dig_machine_answer there = *answer;
-    dig_machine_steps_values(z, NULL, &there);
-    const enum dig_status status =
-        dig_machine_side_apply(w->machine, there.effects, there.effect, apply, measured);
-    if (status == DIG_OK) {
-        means_added(w->batch, measured, added);
-    }
-    return status == DIG_EINVAL ? DIG_ENOMATCH : status;
-}
-
-// A step at which a dig is not told is a way that stays shut.
-static enum dig_status find_steps(const struct dig_trace_work *const     w,
-                                  const struct dig_machine_answer *const answer,
-                                  struct dig_measured other[], struct dig_steps *const steps)
-{
-    static const double none[DIG_MACHINE_NUMBERS] = { 0.0 };
-    double              middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
-    enum dig_status     status = added_at(w, answer, none, DIG_APPLY_ROUGHLY, other, middle);
-    for (size_t k = 0; k < answer->numbers && status == DIG_OK; k++) {
-        double z[DIG_MACHINE_NUMBERS] = { 0.0 };
-        z[k]                          = 1.0;
-        status = added_at(w, answer, z, DIG_APPLY_ROUGHLY, other, steps->of[k]);
-        for (size_t t = 0; t < DIG_TRAJECTORY_MAX && status == DIG_OK; t++) {
-            for (size_t f = 0; f < DIG_FEATURES; f++) {
-                steps->of[k][t][f] -= middle[t][f];
-            }
-        }
-        status = status == DIG_ENOMATCH ? DIG_OK : status;
-    }
-    return status;
+    return DIG_OK;
 }
 
 enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
@@ -99,23 +85,30 @@ enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
                                        struct dig_steps *const                steps)
 {
     assert(w != NULL && answer != NULL && steps != NULL);
-    static const double none[DIG_MACHINE_NUMBERS] = { 0.0 };
-    double              middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    double                    z[DIG_MACHINE_NUMBERS] = { 0.0 };
+    double                    middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    struct dig_machine_answer there = *answer;
     memset(steps, 0, sizeof *steps);
     if (answer->numbers == 0) {
         return DIG_ENOMATCH;
     }
-    steps->steps           = answer->numbers;
-    enum dig_status status = added_at(w, answer, none, DIG_APPLY_TO_ALL, w->measured, middle);
-    if (status != DIG_OK) {
-        return status;
+    steps->steps = answer->numbers;
+    dig_machine_steps_values(z, NULL, &there);
+    enum dig_status status = dig_trace_apply(w, there.effects, there.effect);
+    if (status == DIG_OK) {
+        status = added_at(w, answer, z, middle);
     }
-    struct dig_measured *const other = malloc(w->digs * sizeof *other);
-    if (other == NULL) {
-        return DIG_ENOMEM;
+    for (size_t k = 0; k < answer->numbers && status == DIG_OK; k++) {
+        z[k]   = 1.0;
+        status = added_at(w, answer, z, steps->of[k]);
+        z[k]   = 0.0;
+        for (size_t t = 0; t < DIG_TRAJECTORY_MAX && status == DIG_OK; t++) {
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                steps->of[k][t][f] -= middle[t][f];
+            }
+        }
+        // A step at which a dig is not told is a way that stays shut.
+        status = status == DIG_ENOMATCH ? DIG_OK : status;
     }
-    memcpy(other, w->measured, w->digs * sizeof *other);
-    status = find_steps(w, answer, other, steps);
-    free(other);
     return status;
 }

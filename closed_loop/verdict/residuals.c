@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
 enum { WHITE_DRAWS = 199 };
 
@@ -84,54 +84,37 @@ static void collect(const struct dig_trace_work *const w, const struct dig_trace
     }
 }
 
-static enum dig_status fill_trends(const struct dig_trace_work *const w,
-                                   const struct dig_trace_curves      curves[],
-                                   struct dig_residuals *const        residuals)
+static void fill_trends(const struct dig_trace_work *const w,
+                        const struct dig_trace_curves      curves[],
+                        struct dig_residuals *const        residuals)
 {
-    struct points *const p = malloc(sizeof *p);
-    if (p == NULL) {
-        return DIG_ENOMEM;
-    }
+    struct points p;
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        collect(w, curves, c, p);
-        residuals->known[c] = p->digs > 0;
+        collect(w, curves, c, &p);
+        residuals->known[c] = p.digs > 0;
         for (size_t s = 0; s < DIG_REGRESSORS; s++) {
             struct dig_trend_dig dig[DIG_MEASURED_MAX];
-            for (size_t i = 0; i < p->digs; i++) {
-                dig[i] = (struct dig_trend_dig){ p->n[i], p->state[i][s], p->y[i] };
+            for (size_t i = 0; i < p.digs; i++) {
+                dig[i] = (struct dig_trend_dig){ p.n[i], p.state[i][s], p.y[i] };
             }
-            dig_trend_fit(p->digs, dig, w->settings->seed, &residuals->trend[c][s]);
+            dig_trend_fit(p.digs, dig, w->settings->seed, &residuals->trend[c][s]);
         }
     }
-    free(p);
-    return DIG_OK;
 }
 
-enum dig_status dig_residuals_make(const struct dig_trace_work *const w,
-                                   const struct dig_trace_curves      curves[],
-                                   struct dig_residuals *const        residuals)
+void dig_residuals_make(const struct dig_trace_work *const w,
+                        const struct dig_trace_curves      curves[],
+                        struct dig_residuals *const        residuals)
 {
     assert(w != NULL && curves != NULL && residuals != NULL);
-    struct dig_residuals *const made = calloc(1, sizeof *made);
-    if (made == NULL) {
-        return DIG_ENOMEM;
-    }
-    made->digs = w->digs;
+    memset(residuals, 0, sizeof *residuals);
+    residuals->digs = w->digs;
     for (size_t i = 0; i < w->digs; i++) {
-        fill_dig(w, &curves[i], i, &made->dig[i]);
+        fill_dig(w, &curves[i], i, &residuals->dig[i]);
     }
-    enum dig_status status = fill_trends(w, curves, made);
-    if (status == DIG_OK) {
-        status = dig_portmanteau_judge(w->batch, &w->search->plain, WHITE_DRAWS, w->settings->seed,
-                                       &made->without);
-    }
-    if (status == DIG_OK) {
-        status = dig_portmanteau_judge(w->batch, &w->search->chosen, WHITE_DRAWS, w->settings->seed,
-                                       &made->with);
-    }
-    if (status == DIG_OK) {
-        *residuals = *made;
-    }
-    free(made);
-    return status;
+    fill_trends(w, curves, residuals);
+    residuals->without =
+        dig_portmanteau_judge(w->batch, &w->search->plain, WHITE_DRAWS, w->settings->seed);
+    residuals->with =
+        dig_portmanteau_judge(w->batch, &w->search->chosen, WHITE_DRAWS, w->settings->seed);
 }

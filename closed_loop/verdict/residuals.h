@@ -52,10 +52,8 @@ struct dig_residuals {
 /// "moment_Nm", "fx_N", "fz_N".
 const char *dig_residual_channel_name(enum dig_channel channel);
 
-/// From what a trace has worked out; curves as in the trace. Some tens of milliseconds. DIG_ENOMEM.
-/// Writes on success only.
-DIG_MUST_CHECK enum dig_status dig_residuals_make(const struct dig_trace_work  *w,
-                                                  const struct dig_trace_curves curves[],
-                                                  struct dig_residuals         *residuals);
+/// From what a trace has worked out; curves as in the trace. Some tens of milliseconds.
+void dig_residuals_make(const struct dig_trace_work *w, const struct dig_trace_curves curves[],
+                        struct dig_residuals *residuals);
 
 #endif // DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H

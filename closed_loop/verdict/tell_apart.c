@@ -8,7 +8,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ENOUGH = 3, MORE_DIGS = 10 };
@@ -131,7 +130,7 @@ struct of_machine {
 };
 
 static enum dig_status work_out(const struct dig_trace_work *const w, const enum dig_effect_id id,
-                                struct dig_measured scratch[], struct of_machine *const made)
+                                struct of_machine *const made)
 {
     const struct dig_machine_finding *const air = w->air;
     memset(made, 0, sizeof *made);
@@ -150,11 +149,11 @@ static enum dig_status work_out(const struct dig_trace_work *const w, const enum
         return DIG_OK;
     }
     dig_effect_of(id)->correct(value, &made->correction);
-    memcpy(scratch, w->measured, w->digs * sizeof *scratch);
-    const enum dig_status status =
-        dig_machine_side_apply(w->machine, 1, &made->effect, DIG_APPLY_TO_ALL, scratch);
+    double                machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    const enum dig_status status = dig_machine_side_apply(w->machine, 1, &made->effect,
+                                                          DIG_APPLY_TO_ALL, w->measured, machine);
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
-        dig_features_of((const double(*)[DIG_CURVE_POINTS])scratch[i].machine, made->feature[i]);
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])machine[i], made->feature[i]);
     }
     // One that leaves a dig untold is compared in free air alone.
     return status == DIG_ENOMATCH ? DIG_OK : status;
@@ -242,25 +241,25 @@ static void list_pairs(struct dig_trace *const trace)
 static enum dig_status tell_machines(const struct dig_trace_work *const w,
                                      struct dig_trace *const            trace)
 {
-    struct of_machine *const   made    = calloc(DIG_MACHINE_EFFECTS, sizeof *made);
-    struct dig_measured *const scratch = malloc((w->digs + 1) * sizeof *scratch);
-    enum dig_status            status  = made != NULL && scratch != NULL ? DIG_OK : DIG_ENOMEM;
-    bool                       done[DIG_MACHINE_EFFECTS] = { false };
+    struct of_machine made[DIG_MACHINE_EFFECTS];
+    bool              done[DIG_MACHINE_EFFECTS] = { false };
+    enum dig_status   status                    = DIG_OK;
     for (size_t i = 0; i < trace->tells && status == DIG_OK; i++) {
         struct dig_tell_apart *const tell = &trace->tell[i];
-        for (size_t e = 0; e < 2 && dig_effect_is_of_machine(tell->effect[0]); e++) {
+        if (!dig_effect_is_of_machine(tell->effect[0])) {
+            continue;
+        }
+        for (size_t e = 0; e < 2; e++) {
             const enum dig_effect_id id = tell->effect[e];
             if (status == DIG_OK && !done[id]) {
-                status   = work_out(w, id, scratch, &made[id]);
+                status   = work_out(w, id, &made[id]);
                 done[id] = true;
             }
         }
-        if (status == DIG_OK && dig_effect_is_of_machine(tell->effect[0])) {
+        if (status == DIG_OK) {
             status = tell_machine(w, &made[tell->effect[0]], &made[tell->effect[1]], tell);
         }
     }
-    free(made);
-    free(scratch);
     return status;
 }
 

@@ -35,33 +35,8 @@ void dig_trace_finish(struct dig_trace *const trace)
     }
 }
 
-static void finish(struct dig_trace_work *const w)
-{
-    free(w->surface);
-    dig_scatter_destroy(w->scatter);
-    free(w->soil);
-    free(w->batch);
-    free(w->search);
-    free(w->air);
-    free(w->open);
-}
-
-static enum dig_status out_of_memory(struct dig_error *const error)
-{
-    return dig_error_set(error, DIG_ENOMEM, "out of memory");
-}
-
 static enum dig_status prepare(struct dig_trace_work *const w, struct dig_error *const error)
 {
-    w->surface = calloc(1, sizeof *w->surface);
-    w->batch   = calloc(1, sizeof *w->batch);
-    w->search  = calloc(1, sizeof *w->search);
-    w->air     = calloc(1, sizeof *w->air);
-    w->open    = calloc(1, sizeof *w->open);
-    if (w->surface == NULL || w->batch == NULL || w->search == NULL || w->air == NULL ||
-        w->open == NULL) {
-        return out_of_memory(error);
-    }
     if (dig_response_surface_fit(w->set, w->surface) != DIG_OK) {
         return dig_error_set(error, DIG_EINVAL,
                              "the table holds too few gravels to trace with, expected %d or more",
@@ -181,27 +156,24 @@ static void advise_on_size(const struct dig_trace_work *const w, struct dig_trac
 
 static enum dig_status report(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    trace->curves          = calloc(w->digs + 1, sizeof *trace->curves);
-    trace->digs            = w->digs;
-    enum dig_status status = trace->curves == NULL ? DIG_ENOMEM : DIG_OK;
-    if (status == DIG_OK) {
-        fill_decision(w, trace);
-        status = dig_trace_fill_verdict(w, trace);
-
-        trace->significant = trace->significant || trace->effects > 0;
+    trace->digs      = w->digs;
+    trace->curves    = calloc(w->digs, sizeof *trace->curves);
+    trace->residuals = malloc(sizeof *trace->residuals);
+    if (trace->curves == NULL || trace->residuals == NULL) {
+        return DIG_ENOMEM;
     }
-    if (status == DIG_OK) {
-        dig_trace_fill_candidates(w, trace);
-        dig_trace_fill_curves(w, trace->unlisted, trace->curves);
-        drop_what_is_not_worth_it(w, trace);
-        fill_errors(w, trace);
-        trace->residuals = malloc(sizeof *trace->residuals);
-        status = trace->residuals != NULL ? dig_residuals_make(w, trace->curves, trace->residuals)
-                                          : DIG_ENOMEM;
+    fill_decision(w, trace);
+    enum dig_status status = dig_trace_fill_verdict(w, trace);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (status == DIG_OK) {
-        status = dig_tell_apart(w, trace);
-    }
+    trace->significant = trace->significant || trace->effects > 0;
+    dig_trace_fill_candidates(w, trace);
+    dig_trace_fill_curves(w, trace->unlisted, trace->curves);
+    drop_what_is_not_worth_it(w, trace);
+    fill_errors(w, trace);
+    dig_residuals_make(w, trace->curves, trace->residuals);
+    status = dig_tell_apart(w, trace);
     if (status == DIG_OK) {
         dig_trace_advise(w, trace);
         advise_on_size(w, trace);
@@ -235,20 +207,15 @@ static void choose_rate(struct dig_trace_work *const w)
 // An effect of the soil that another gravel of the table could stand in for: see
 // dig_trace_weigh_air().
 // So with what has no name, of the soil or of the machine.
-static enum dig_status weigh_soil(struct dig_trace_work *const w)
+static void weigh_soil(const struct dig_trace_work *const w)
 {
-    struct dig_search *const s      = w->search;
-    enum dig_status          status = DIG_OK;
-    const double             left   = dig_effect_size_left(w->batch, &s->plain);
-    s->unnamed                      = fmax(dig_effect_size_chance(left), DIG_TRACE_UNCONFIRMED);
-    for (size_t e = 0;
-         s->significant && !s->unlisted && e < s->chosen.hypothesis.effects && status == DIG_OK;
-         e++) {
-        double size = 0.0;
-        status      = dig_effect_size_of_soil(w->batch, &s->chosen, e, s->plain.noise, &size);
+    struct dig_search *const s    = w->search;
+    const double             left = dig_effect_size_left(w->batch, &s->plain);
+    s->unnamed                    = fmax(dig_effect_size_chance(left), DIG_TRACE_UNCONFIRMED);
+    for (size_t e = 0; s->significant && !s->unlisted && e < s->chosen.hypothesis.effects; e++) {
+        const double size = dig_effect_size_of_soil(w->batch, &s->chosen, e, s->plain.noise);
         s->probability[e] *= fmax(dig_effect_size_chance(size), DIG_TRACE_UNCONFIRMED);
     }
-    return status;
 }
 
 static bool is_in_set(const struct dig_search *const s, const enum dig_effect_id effect)
@@ -259,14 +226,14 @@ static bool is_in_set(const struct dig_search *const s, const enum dig_effect_id
 
 // How well what was found is known (covariance: of what is open of the machine), and what cannot be
 // told from it. Of what has lost, nothing is said.
-static enum dig_status find_intervals(struct dig_trace_work *const w, const uint64_t seed,
-                                      double covariance[])
+static void find_intervals(const struct dig_trace_work *const w, double covariance[])
 {
-    struct dig_search *const s = w->search;
-    enum dig_status status     = dig_posterior_intervals(w->batch, seed, &s->chosen, covariance);
-    for (size_t i = 0; i < s->rivals && status == DIG_OK; i++) {
+    struct dig_search *const s    = w->search;
+    const uint64_t           seed = w->settings->seed;
+    dig_posterior_intervals(w->batch, seed, &s->chosen, covariance);
+    for (size_t i = 0; i < s->rivals; i++) {
         if (is_in_set(s, s->rival[i].hypothesis.effect[0])) {
-            status = dig_posterior_intervals(w->batch, seed, &s->rival[i], NULL);
+            dig_posterior_intervals(w->batch, seed, &s->rival[i], NULL);
             continue;
         }
         for (size_t j = 0; j < DIG_HYPOTHESIS_NUMBERS; j++) {
@@ -274,7 +241,6 @@ static enum dig_status find_intervals(struct dig_trace_work *const w, const uint
             s->rival[i].high[j] = (double)NAN;
         }
     }
-    return status;
 }
 
 static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *const trace,
@@ -282,6 +248,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
 {
     const struct dig_trace_settings *const settings = w->settings;
 
+    double          level  = settings->false_alarm;
     enum dig_status status = prepare(w, error);
     if (status == DIG_OK) {
         status = check_digs(w, error);
@@ -289,46 +256,47 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     if (status == DIG_OK) {
         status = dig_trace_batch(w, &w->before, error);
     }
-    if (status == DIG_OK) {
-        status = dig_posterior_intervals(w->batch, settings->seed, &w->before, NULL);
+    if (status != DIG_OK) {
+        return status;
     }
-    double            covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
-    struct dig_fitted plain = w->before;
-    if (status == DIG_OK && w->machine != NULL) {
+    dig_posterior_intervals(w->batch, settings->seed, &w->before, NULL);
+    if (w->machine != NULL) {
+        level /= 2.0;
         choose_rate(w);
-        status = dig_trace_machine(w, &plain, error);
+        status = dig_trace_machine(w, error);
     }
-    if (status == DIG_OK) {
-        choose_rate(w);
-        const double level =
-            w->machine != NULL ? settings->false_alarm / 2.0 : settings->false_alarm;
-        status = dig_search_run(w->batch, level, settings->bootstraps, settings->seed, w->search);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (status == DIG_OK) {
-        dig_trace_doubt_soil(w);
-        status = find_intervals(w, settings->seed, covariance);
+    double covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
+    choose_rate(w);
+    dig_search_run(w->batch, level, settings->bootstraps, settings->seed, w->search);
+    dig_trace_doubt_soil(w);
+    find_intervals(w, covariance);
+    status = dig_trace_settle_machine(w, covariance);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (status == DIG_OK) {
-        status = dig_trace_settle_machine(w, covariance);
-    }
-    if (status == DIG_OK) {
-        status = weigh_soil(w);
-    }
-    if (status == DIG_OK) {
-        status = dig_trace_confirm_without_air(w);
-    }
-    if (status == DIG_OK) {
-        dig_steps_settle(w->batch, w->search->chosen.z);
-    }
+    weigh_soil(w);
+    dig_trace_confirm_without_air(w);
+    dig_steps_settle(w->batch, w->search->chosen.z);
     // Nothing was found that is corrected: nothing changes.
-    if (status == DIG_OK && w->air->effects == 0 && !w->search->significant) {
+    if (w->air->effects == 0 && !w->search->significant) {
         w->search->chosen = w->before;
     }
-    if (status == DIG_OK) {
-        status = dig_trace_ground(w, &trace->ground, error);
-    }
+    status = dig_trace_ground(w, &trace->ground, error);
     return status == DIG_OK ? report(w, trace) : status;
 }
+
+// What a trace works in, but for what has its size from the table.
+struct room {
+    struct dig_response_surface surface;
+    struct dig_whitened_digs    batch;
+    struct dig_search           search;
+    struct dig_machine_finding  air;
+    struct dig_trace_open       open;
+    struct dig_trace            made;
+};
 
 enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char *const table,
                               const struct dig_entry_set *const      effects,
@@ -338,27 +306,33 @@ enum dig_status dig_trace_run(const struct dig_curve_set *const set, const char 
                               struct dig_error *const error)
 {
     assert(set != NULL && settings != NULL && measured != NULL && trace != NULL);
-    struct dig_error      why  = { "" };
-    struct dig_trace_work w    = { .set      = set,
-                                   .table    = table,
-                                   .effects  = effects,
-                                   .settings = settings,
-                                   .machine  = machine,
-                                   .digs     = digs,
-                                   .measured = measured };
-    struct dig_trace     *made = calloc(1, sizeof *made);
-    if (made == NULL) {
-        return out_of_memory(error);
+    struct room *const room = calloc(1, sizeof *room);
+    if (room == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
-    const enum dig_status status = run(&w, made, &why);
+    struct dig_error      why    = { "" };
+    struct dig_trace_work w      = { .set      = set,
+                                     .table    = table,
+                                     .effects  = effects,
+                                     .settings = settings,
+                                     .machine  = machine,
+                                     .digs     = digs,
+                                     .measured = measured,
+                                     .surface  = &room->surface,
+                                     .batch    = &room->batch,
+                                     .search   = &room->search,
+                                     .air      = &room->air,
+                                     .open     = &room->open };
+    const enum dig_status status = run(&w, &room->made, &why);
     if (status == DIG_OK) {
-        *trace = *made;
+        *trace = room->made;
     } else {
-        dig_trace_finish(made);
+        dig_trace_finish(&room->made);
         (void)dig_error_set(error, status, "%s",
                             why.text[0] != '\0' ? why.text : dig_status_str(status));
     }
-    free(made);
-    finish(&w);
+    dig_scatter_destroy(w.scatter);
+    free(w.soil);
+    free(room);
     return status;
 }

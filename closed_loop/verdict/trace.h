@@ -85,9 +85,9 @@ struct dig_trace_settings dig_trace_settings_default(void);
 /// curves' standard deviations do. effects may be NULL: only effects with a reduced form compete
 /// then. machine may be NULL: the digs were measured by a force sensor. measured[].machine is
 /// filled when an effect of the machine was found; of a dig at another depth that its path tells,
-/// value becomes that of the plain dig. Seconds of one core. DIG_EINVAL: fewer than two
-/// fit or identify digs, a trajectory that the set lacks; *error says so. DIG_ENOMEM. Writes *trace
-/// on success only.
+/// value becomes that of the plain dig. Seconds of one core, 1.3 MB of stack. DIG_EINVAL: fewer
+/// than two fit or identify digs, a trajectory that the set lacks; *error says so. DIG_ENOMEM.
+/// Writes *trace on success only.
 DIG_MUST_CHECK enum dig_status dig_trace_run(const struct dig_curve_set *set, const char *table,
                                              const struct dig_entry_set      *effects,
                                              const struct dig_trace_settings *settings,

@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 // How hard one gravel resists over another: My, the geometric mean over the trajectories dug.
 static double ratio_of(const struct dig_trace_work *const w, const double above[DIG_AXES],
@@ -27,19 +26,15 @@ static double ratio_of(const struct dig_trace_work *const w, const double above[
 static enum dig_status take_bucket(const char *const table, struct dig_effect_ground *const ground,
                                    struct dig_error *const error)
 {
-    struct dig_scene *const scene = malloc(sizeof *scene);
-    if (scene == NULL) {
-        return DIG_ENOMEM;
-    }
-    const enum dig_status status = dig_table_scene(table, scene, error);
+    struct dig_scene      scene;
+    const enum dig_status status = dig_table_scene(table, &scene, error);
     if (status == DIG_OK) {
-        const struct dig_material_pair *const bucket = dig_scene_bucket_pair(scene);
+        const struct dig_material_pair *const bucket = dig_scene_bucket_pair(&scene);
         if (bucket != NULL) {
             ground->bucket_friction = bucket->friction;
             ground->bucket_rolling  = bucket->rolling;
         }
     }
-    free(scene);
     return status;
 }
 

@@ -22,23 +22,16 @@ static bool was_tried(const struct dig_whitened_digs *const batch)
     return tried;
 }
 
-enum dig_status dig_trace_confirm_without_air(struct dig_trace_work *const w)
+void dig_trace_confirm_without_air(struct dig_trace_work *const w)
 {
     assert(w != NULL);
-    const struct dig_search *const s      = w->search;
-    double                         gain   = 0.0;
-    enum dig_status                status = DIG_OK;
-    w->confirmed                          = true;
-    if (!w->air->no_air || !s->significant) {
-        return status;
+    const struct dig_search *const s = w->search;
+    w->confirmed                     = true;
+    if (w->air->no_air && s->significant) {
+        w->confirmed = s->unlisted
+                           ? was_tried(w->batch)
+                           : dig_cross_validation_gain(w->batch, &s->plain, &s->chosen) > 0.0;
     }
-    if (s->unlisted) {
-        w->confirmed = was_tried(w->batch);
-        return status;
-    }
-    status       = dig_cross_validation_gain(w->batch, &s->plain, &s->chosen, &gain);
-    w->confirmed = gain > 0.0;
-    return status;
 }
 
 void dig_trace_advise_on_air(const struct dig_trace_work *const w, struct dig_trace *const trace)

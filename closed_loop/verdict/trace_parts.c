@@ -1,6 +1,7 @@
 #include "closed_loop/verdict/trace_work.h"
 
 #include "closed_loop/accuracy/judge.h"
+#include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/regressors.h"
 #include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/tell_apart.h"
@@ -9,7 +10,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static void add_parameter(const char *const name, const double value, const double low,
@@ -218,22 +218,22 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
 // CONTRACT's error of the digs fitted to, by one candidate.
 static double fit_error(const struct dig_trace_work *const w, const struct dig_fitted *const fitted)
 {
-    bool                           take[DIG_MEASURED_MAX] = { false };
-    struct dig_trace_curves *const curves                 = calloc(w->digs, sizeof *curves);
-    if (curves == NULL) {
-        return (double)NAN;
-    }
+    static const double no_sd[DIG_CURVE_POINTS] = { 0.0 };
+    struct dig_score    all                     = { 0 };
     for (size_t i = 0; i < w->batch->digs; i++) {
-        const size_t m = w->batch->dig[i].measured;
-        take[m]        = true;
-        dig_fitted_curve(w->soil, fitted, &w->measured[m], curves[m].after);
+        const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
+        struct dig_score                 one = { 0 };
+        double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_fitted_curve(w->soil, fitted, dig, curve);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            curves[m].after[DIG_CHANNEL_MY_Nm][k] += w->measured[m].machine[DIG_CHANNEL_MY_Nm][k];
+            curve[DIG_CHANNEL_MY_Nm][k] += dig->machine[DIG_CHANNEL_MY_Nm][k];
         }
+        dig_score_add(&one, &w->set->trajectory[dig->trajectory], w->set->tooth_m, dig->first,
+                      dig->last, dig->value[DIG_CHANNEL_MY_Nm], curve[DIG_CHANNEL_MY_Nm], no_sd);
+        all.wrong_N2m2s += one.wrong_N2m2s;
+        all.whole_N2m2s += one.whole_N2m2s;
     }
-    const double error = dig_judge_error(w->set, w->digs, w->measured, curves, take, true, 1).value;
-    free(curves);
-    return error;
+    return dig_score_error(&all);
 }
 
 static void add_candidate(const struct dig_model_effect *const made,

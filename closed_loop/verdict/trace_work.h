@@ -40,13 +40,18 @@ struct dig_trace_work {
     bool                         confirmed; // what was chosen may be applied: see below
 };
 
+/// Leaves in w->measured[].machine what these effects add to every dig; fails as
+/// dig_machine_side_apply(), and leaves it as it was then.
+DIG_MUST_CHECK enum dig_status dig_trace_apply(const struct dig_trace_work *w, size_t effects,
+                                               const struct dig_model_effect effect[]);
+
 /// The batch of the digs to fit to, its scatter that of the gravel it turns out to be (*plain).
 DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w,
                                                struct dig_fitted *plain, struct dig_error *error);
 
-/// Leaves in w->measured[].machine what the answer's values add to every dig, and in *steps what
-/// its steps from there add to the mean dig of each of the batch's trajectories. DIG_ENOMATCH: a
-/// dig is not told with the effects. DIG_ENOMEM. Some milliseconds a parameter.
+/// The same of what the answer's values add, and in *steps what its steps from there add to the
+/// mean dig of each of the batch's trajectories. DIG_ENOMATCH besides: it leaves nothing open. Some
+/// milliseconds a parameter.
 DIG_MUST_CHECK enum dig_status dig_machine_steps_make(const struct dig_trace_work     *w,
                                                       const struct dig_machine_answer *answer,
                                                       struct dig_steps                *steps);
@@ -57,11 +62,10 @@ void dig_machine_steps_values(const double z[], const double covariance[],
                               struct dig_machine_answer *answer);
 
 /// Finds what is missing of the machine, by free air and the digs together, and takes it off the
-/// digs: leaves measured[].machine, the batch and *plain with it, what is open of it as the batch's
-/// steps, each effect's size in the digs in size[], and its probability weighed by that. w->before:
-/// the plain fit of the batch of the raw digs.
-DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_trace_work *w, struct dig_fitted *plain,
-                                                 struct dig_error *error);
+/// digs: leaves measured[].machine and the batch with it, what is open of it as the batch's steps,
+/// each effect's size in the digs in size[], and its probability weighed by that. w->before: the
+/// plain fit of the batch of the raw digs.
+DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_trace_work *w, struct dig_error *error);
 
 /// Leaves the machine's effects, their intervals (by the covariance of z of the batch's steps) and
 /// measured[].machine as what the search chose has them. DIG_ENOMEM.
@@ -70,8 +74,8 @@ DIG_MUST_CHECK enum dig_status dig_trace_settle_machine(struct dig_trace_work *w
 
 /// Leaves in confirmed whether what the search chose may change the prediction: always where free
 /// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
-/// better. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_trace_confirm_without_air(struct dig_trace_work *w);
+/// better.
+void dig_trace_confirm_without_air(struct dig_trace_work *w);
 
 /// Gives up the names of what the soil shows while free air shows a machine that no effect
 /// explains: it may be the machine's.

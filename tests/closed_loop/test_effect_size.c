@@ -50,6 +50,16 @@ static int clean(void **state)
     return 0;
 }
 
+static double size_of_machine(const struct dig_fitted *const fitted)
+{
+    double machine[DIGS][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    for (size_t i = 0; i < DIGS; i++) {
+        memcpy(machine[i], measured[i].machine, sizeof machine[i]);
+    }
+    return dig_effect_size_of_machine(
+        batch, fitted, (const double(*)[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])machine);
+}
+
 // The machine adds this share of the scatter of one dig, changing sign ten times along each dig: no
 // gravel does that.
 static void add_wave(const double share)
@@ -72,7 +82,7 @@ static void add_wave(const double share)
 TEST(without_the_machine_there_is_no_size)
 {
     add_wave(0.0);
-    assert_close(dig_effect_size_of_machine(batch, &plain, measured), 0.0, 1e-12);
+    assert_close(size_of_machine(&plain), 0.0, 1e-12);
 }
 
 // Four digs of each trajectory: their mean scatters by half as much as one; what all share (.05 for
@@ -80,10 +90,10 @@ TEST(without_the_machine_there_is_no_size)
 TEST(what_no_gravel_does_counts_in_floors)
 {
     add_wave(2.0);
-    const double size = dig_effect_size_of_machine(batch, &plain, measured);
+    const double size = size_of_machine(&plain);
     assert_in_range(1000.0 * size, 3000, 4000);
     add_wave(4.0);
-    assert_close(dig_effect_size_of_machine(batch, &plain, measured), 2.0 * size, 0.05 * size);
+    assert_close(size_of_machine(&plain), 2.0 * size, 0.05 * size);
 }
 
 TEST(what_another_gravel_does_is_no_size)
@@ -105,14 +115,14 @@ TEST(what_another_gravel_does_is_no_size)
                 b[DIG_CHANNEL_MY_Nm][k] - a[DIG_CHANNEL_MY_Nm][k];
         }
     }
-    assert_close(dig_effect_size_of_machine(batch, &at, measured), 0.0, 0.02);
+    assert_close(size_of_machine(&at), 0.0, 0.02);
     // Twice of it is beyond the table's grid.
     for (size_t i = 0; i < DIGS; i++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             measured[i].machine[DIG_CHANNEL_MY_Nm][k] *= 20.0;
         }
     }
-    assert_true(dig_effect_size_of_machine(batch, &at, measured) > 3.0);
+    assert_true(size_of_machine(&at) > 3.0);
 }
 
 // The digs are measured with what the machine adds; whether that is known to be the machine's.
@@ -135,7 +145,7 @@ TEST(what_no_gravel_explains_is_left)
     memcpy(as_dug, measured, sizeof as_dug);
     const double plainly = dig_effect_size_left(batch, &plain);
     add_wave(2.0);
-    const double size = dig_effect_size_of_machine(batch, &plain, measured);
+    const double size = size_of_machine(&plain);
     add_to_value(true);
     const double known = dig_effect_size_left(batch, &plain);
     memcpy(measured, as_dug, sizeof as_dug);
@@ -170,7 +180,6 @@ TEST(digs_of_a_plain_gravel_leave_nothing)
 static double size_of(const double layer, const double cohesion)
 {
     struct dig_fitted chosen = plain;
-    double            size   = -1.0;
     chosen.hypothesis =
         (struct dig_hypothesis){ .effects = 2,
                                  .effect  = { DIG_EFFECT_COHESION, DIG_EFFECT_LAYERING } };
@@ -178,8 +187,7 @@ static double size_of(const double layer, const double cohesion)
     chosen.number[DIG_AT_CONTRAST(0)] = 1.0;
     chosen.number[DIG_AT_U(1)]        = layer;
     chosen.number[DIG_AT_CONTRAST(1)] = 1.0;
-    assert_int_equal(dig_effect_size_of_soil(batch, &chosen, 1, plain.noise, &size), DIG_OK);
-    return size;
+    return dig_effect_size_of_soil(batch, &chosen, 1, plain.noise);
 }
 
 // The layer of the made world is a bump that no gravel has: it counts in proportion, and by itself.

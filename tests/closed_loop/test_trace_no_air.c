@@ -45,7 +45,7 @@ static struct dig_trace_work work(const size_t digs)
 static bool is_confirmed(struct dig_trace_work *const w)
 {
     w->confirmed = false;
-    assert_int_equal(dig_trace_confirm_without_air(w), DIG_OK);
+    dig_trace_confirm_without_air(w);
     return w->confirmed;
 }
 

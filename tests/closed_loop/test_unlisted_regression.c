@@ -80,8 +80,8 @@ static void regress(struct dig_regressed *const means, struct dig_regressed *con
     assert_int_equal(
         dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
     dig_hypothesis_fit(batch, &none, middle, DIG_FIT_THOROUGH, &plain);
-    assert_int_equal(dig_regress(batch, &plain, false, means), DIG_OK);
-    assert_int_equal(dig_regress(batch, &plain, true, digs), DIG_OK);
+    *means = dig_regress(batch, &plain, false);
+    *digs  = dig_regress(batch, &plain, true);
 }
 
 static bool has(const struct dig_regressed *const r, const enum dig_basis basis)
