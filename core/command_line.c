@@ -1,6 +1,7 @@
 #include "core/command_line.h"
 
 #include "core/did_you_mean.h"
+#include "core/help.h"
 #include "core/text.h"
 
 #include <assert.h>
@@ -11,13 +12,10 @@
 
 enum { OPTIONS_MAX = 48 };
 
-const struct dig_command *dig_command_find(const struct dig_program *const program,
-                                           const char *const name, struct dig_error *const error)
+static const struct dig_command *find_command(const struct dig_program *const program,
+                                              const char *const name, struct dig_error *const error)
 {
-    assert(program != NULL);
-    if (name != NULL && name[0] == '-') {
-        return &program->self;
-    }
+    const bool       needed    = program->commands > 0 && !program->alone;
     struct dig_guess guess     = dig_guess(name != NULL ? name : "");
     char             list[200] = "";
     for (size_t i = 0; i < program->commands; i++) {
@@ -32,6 +30,9 @@ const struct dig_command *dig_command_find(const struct dig_program *const progr
                                                   : ", ",
                      known);
     }
+    if (!needed || (name != NULL && name[0] == '-')) {
+        return &program->self;
+    }
     char text[DIG_GUESS_SIZE];
     if (name == NULL) {
         (void)dig_error_set(error, DIG_EINVAL, "expected a command: %s", list);
@@ -42,15 +43,6 @@ const struct dig_command *dig_command_find(const struct dig_program *const progr
         (void)dig_error_set(error, DIG_EINVAL, "%s: unknown command, expected %s", name, list);
     }
     return NULL;
-}
-
-bool dig_option_belongs(const struct dig_option *const  option,
-                        const struct dig_command *const command)
-{
-    assert(option != NULL && command != NULL);
-    char word[32];
-    (void)snprintf(word, sizeof word, " %s ", command->name);
-    return option->commands == NULL || strstr(option->commands, word) != NULL;
 }
 
 // Says what is wrong with the option in word, which getopt did not take.
@@ -78,7 +70,7 @@ static void refuse(const struct dig_program *const program, const struct dig_com
         const struct dig_option *const o = &program->option[i];
         if (dig_option_belongs(o, command)) {
             dig_guess_try(&guess, o->name);
-        } else if (is_long ? strcmp(o->name, name) == 0 : o->id == optopt) {
+        } else if (is_long ? strcmp(o->name, name) == 0 : o->letter == optopt) {
             (void)dig_error_set(error, DIG_EINVAL, "%s takes no %s%s", command->name, dashes, name);
             return;
         }
@@ -88,18 +80,50 @@ static void refuse(const struct dig_program *const program, const struct dig_com
                         is_long ? dig_guess_text(&guess, "--", text) : "");
 }
 
-int dig_option_next(const struct dig_program *const program,
-                    const struct dig_command *const command, const int argc, char *argv[],
-                    struct dig_error *const error)
+// What the option says into its field.
+static enum dig_status take(const struct dig_option *const o, const char *const value,
+                            void *const into, struct dig_error *const error)
 {
-    assert(program != NULL && command != NULL && program->options < OPTIONS_MAX);
+    void *const field = (char *)into + o->offset;
+    const bool  any   = o->least >= o->most;
+    bool        ok    = false;
+    switch (o->kind) {
+    case DIG_OPTION_CALL: return o->take(value, into, error);
+    case DIG_OPTION_TEXT: *(const char **)field = value; return DIG_OK;
+    case DIG_OPTION_FLAG: *(bool *)field = !o->clears; return DIG_OK;
+    case DIG_OPTION_NUMBER: ok = dig_number_read(value, o->least, o->most, field); break;
+    case DIG_OPTION_COUNT:
+        ok = dig_count_read(value, (uint64_t)o->least, any ? UINT64_MAX : (uint64_t)o->most, field);
+        break;
+    }
+    if (ok) {
+        return DIG_OK;
+    }
+    return any ? dig_error_set(error, DIG_EINVAL, "--%s %s: expected a whole number", o->name,
+                               value)
+               : dig_error_set(error, DIG_EINVAL, "--%s %s: expected %g to %g%s%s", o->name, value,
+                               o->least, o->most, o->unit != NULL ? " " : "",
+                               o->unit != NULL ? o->unit : "");
+}
+
+const struct dig_command *dig_options_read(const struct dig_program *const program, const int argc,
+                                           char *argv[], void *const into,
+                                           struct dig_error *const error)
+{
+    // What getopt says of a short option is its letter, of a long one its row, from ROWS on.
+    enum { VERSION = 1, ROWS = 256 };
+    assert(program != NULL && program->options < OPTIONS_MAX && into != NULL);
+    const struct dig_command *const command = find_command(program, argv[1], error);
+    if (command == NULL) {
+        return NULL;
+    }
     struct option known[OPTIONS_MAX + 2] = {
-        { "help", no_argument, NULL, DIG_OPTION_HELP },
-        { "version", no_argument, NULL, DIG_OPTION_VERSION },
+        { "help", no_argument, NULL, 'h' },
+        { "version", no_argument, NULL, VERSION },
     };
-    char   letters[2 * OPTIONS_MAX + 3] = ":h";
-    size_t options                      = 2;
-    size_t used                         = strlen(letters);
+    char                     letters[2 * OPTIONS_MAX + 3] = ":h";
+    size_t                   options                      = 2;
+    const struct dig_option *row[ROWS + OPTIONS_MAX]      = { NULL };
     for (size_t i = 0; i < program->options; i++) {
         const struct dig_option *const o = &program->option[i];
         if (!dig_option_belongs(o, command)) {
@@ -107,31 +131,38 @@ int dig_option_next(const struct dig_program *const program,
         }
         known[options++] =
             (struct option){ o->name, o->value != NULL ? required_argument : no_argument, NULL,
-                             o->id };
-        if (o->id < 256) {
-            letters[used++] = (char)o->id;
-            letters[used]   = ':';
-            used += o->value != NULL ? 1 : 0;
+                             ROWS + (int)i };
+        row[ROWS + i] = o;
+        if (o->letter != 0) {
+            row[(unsigned char)o->letter] = o;
+            dig_text_add(sizeof letters, letters, "%c%s", o->letter, o->value != NULL ? ":" : "");
         }
     }
-    letters[used]  = '\0';
-    known[options] = (struct option){ NULL, 0, NULL, 0 };
-    // getopt sees the command in the program's place. It begins with 1, or with 0 to begin anew.
+    // getopt sees the command in the program's place, and begins anew with 0.
     const int skipped = command == &program->self ? 0 : 1;
-    optind -= optind > 1 ? skipped : 0;
-    opterr          = 0;
-    const int found = getopt_long(argc - skipped, argv + skipped, letters, known, NULL);
+    optind            = 0;
+    opterr            = 0;
+    for (int found;
+         (found = getopt_long(argc - skipped, argv + skipped, letters, known, NULL)) != -1;) {
+        if (found == 'h') {
+            dig_help_print(program, command, stdout);
+            exit(EXIT_SUCCESS);
+        }
+        if (found == VERSION) {
+            (void)printf("%s %s\n", program->self.name, DIG_VERSION);
+            exit(EXIT_SUCCESS);
+        }
+        if (found == '?' || found == ':') {
+            refuse(program, command, found, argv[optind - 1 + skipped], error);
+            return NULL;
+        }
+        if (take(row[found], optarg, into, error) != DIG_OK) {
+            return NULL;
+        }
+    }
     optind += skipped;
-    if (found == '?' || found == ':') {
-        refuse(program, command, found, argv[optind - 1], error);
-        return DIG_OPTION_WRONG;
-    }
-    if (found == DIG_OPTION_END && command == &program->self && program->commands > 0 &&
-        !program->alone) {
-        (void)dig_command_find(program, NULL, error);
-        return DIG_OPTION_WRONG;
-    }
-    return found;
+    // Options alone are no command.
+    return skipped == 0 ? find_command(program, NULL, error) : command;
 }
 
 bool dig_number_read(const char *const text, const double least, const double most,
@@ -141,6 +172,19 @@ bool dig_number_read(const char *const text, const double least, const double mo
     char        *end   = NULL;
     const double found = strtod(text, &end);
     if (end == text || *end != '\0' || !(found >= least && found <= most)) {
+        return false;
+    }
+    *value = found;
+    return true;
+}
+
+bool dig_count_read(const char *const text, const uint64_t least, const uint64_t most,
+                    uint64_t *const value)
+{
+    assert(text != NULL && value != NULL);
+    char                    *end   = NULL;
+    const unsigned long long found = strtoull(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || *end != '\0' || found < least || found > most) {
         return false;
     }
     *value = found;

@@ -9,15 +9,40 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
-/// --help (-h) and --version need no row.
+enum dig_option_kind {
+    DIG_OPTION_CALL,
+    DIG_OPTION_TEXT,
+    DIG_OPTION_FLAG,
+    DIG_OPTION_NUMBER,
+    DIG_OPTION_COUNT
+};
+
+/// An option; --help (-h) and --version need no row. A row ends with where its value goes:
+/// DIG_INTO() a field, or to take(), which says in *error what is wrong with it.
 struct dig_option {
     const char *name;     // the long one
-    int         id;       // what dig_option_next() returns; a letter is the short option, too
     const char *value;    // "CURVE.csv" or "kernel|ode|cuda"; NULL: it takes none
     const char *commands; // " dig show ": which take it; NULL: all
     const char *text;     // what it does: no capital, no full stop
+    size_t      offset;
+    double      least, most; // of a number or count; both 0: any count
+    const char *unit;        // of these; NULL: none
+    enum dig_status (*take)(const char *value, void *into, struct dig_error *error);
+    enum dig_option_kind kind;
+    bool                 clears; // the field of a flag
+    char                 letter; // the short one; 0: none
 };
+
+/// The field that an option fills: a const char * with its value as it stands, a bool with true, a
+/// double or uint64_t with a number. Behind it least, most and unit may stand.
+// clang-format off
+#define DIG_INTO(type, field)                                                                      \
+    .kind = _Generic(((type *)0)->field, const char *: DIG_OPTION_TEXT, bool: DIG_OPTION_FLAG,     \
+                     double: DIG_OPTION_NUMBER, uint64_t: DIG_OPTION_COUNT),                       \
+    .offset = offsetof(type, field)
+// clang-format on
 
 struct dig_command {
     const char *name;
@@ -37,24 +62,18 @@ struct dig_program {
     const struct dig_option  *option;
 };
 
-enum { DIG_OPTION_END = -1, DIG_OPTION_WRONG = '?', DIG_OPTION_HELP = 'h', DIG_OPTION_VERSION = 1 };
-
-/// The command called name, argv[1]; &program->self for an option. NULL, with *error, for an
-/// unknown one and for NULL, none.
-const struct dig_command *dig_command_find(const struct dig_program *program, const char *name,
-                                           struct dig_error *error);
-
-/// The next option of the command in the whole command line: its id, its value in getopt's optarg.
-/// DIG_OPTION_END: none is left, and what is no option stands from getopt's optind on.
-/// DIG_OPTION_WRONG fills *error; so does the end, where a command is missing. Set optind to 0
-/// before a second command line.
-int dig_option_next(const struct dig_program *program, const struct dig_command *command, int argc,
-                    char *argv[], struct dig_error *error);
-
-/// True for an option that the command takes.
-bool dig_option_belongs(const struct dig_option *option, const struct dig_command *command);
+/// Reads the whole command line into *into, the struct that the options' fields are of, and returns
+/// its command, which is argv[1]; &program->self where there is none to name. Prints help or
+/// version and exits where asked to. What is no option stands from getopt's optind on. NULL, with
+/// *error, for a command or option that is wrong or missing; *into is then filled in part.
+DIG_MUST_CHECK const struct dig_command *dig_options_read(const struct dig_program *program,
+                                                          int argc, char *argv[], void *into,
+                                                          struct dig_error *error);
 
 /// A number, all of text, from least to most. False leaves *value; NaN is never in the range.
 bool dig_number_read(const char *text, double least, double most, double *value);
+
+/// As dig_number_read(), of a whole number without sign.
+bool dig_count_read(const char *text, uint64_t least, uint64_t most, uint64_t *value);
 
 #endif // DIG_CORE_COMMAND_LINE_H

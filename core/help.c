@@ -49,8 +49,8 @@ static void put_option(FILE *const to, const struct dig_option *const o)
 {
     char left[80];
     char letter[8] = "    ";
-    if (o->id > ' ' && o->id < 256) {
-        (void)snprintf(letter, sizeof letter, "-%c, ", o->id);
+    if (o->letter != 0) {
+        (void)snprintf(letter, sizeof letter, "-%c, ", o->letter);
     }
     (void)snprintf(left, sizeof left, "  %s--%s%s%s", letter, o->name, o->value != NULL ? " " : "",
                    o->value != NULL ? o->value : "");
@@ -66,6 +66,15 @@ static void put_lines(FILE *const to, const char *const first, const char *const
         (void)fprintf(to, "%s%.*s\n", before, (int)length, text);
         text += length + (text[length] == '\n' ? 1 : 0);
     }
+}
+
+bool dig_option_belongs(const struct dig_option *const  option,
+                        const struct dig_command *const command)
+{
+    assert(option != NULL && command != NULL);
+    char word[32];
+    (void)snprintf(word, sizeof word, " %s ", command->name);
+    return option->commands == NULL || strstr(option->commands, word) != NULL;
 }
 
 void dig_help_print(const struct dig_program *const program,
@@ -101,12 +110,12 @@ void dig_help_print(const struct dig_program *const program,
             put_option(to, &program->option[i]);
         }
     }
-    put_option(to, &(struct dig_option){ "help", 'h', NULL, NULL,
-                                         all && program->commands > 0
-                                             ? "this text; behind a command, the command's"
-                                             : "this text" });
-    put_option(
-        to, &(struct dig_option){ "version", DIG_OPTION_VERSION, NULL, NULL, "name and version" });
+    put_option(to, &(struct dig_option){ .name   = "help",
+                                         .letter = 'h',
+                                         .text   = all && program->commands > 0
+                                                       ? "this text; behind a command, the command's"
+                                                       : "this text" });
+    put_option(to, &(struct dig_option){ .name = "version", .text = "name and version" });
     (void)fputs("\nExamples:\n", to);
     put_lines(to, "  ", "  ", c->examples);
     (void)fputs("\nExit status:\n", to);

@@ -1,6 +1,6 @@
 // digsightd: reads a machine's bus, identifies the gravel, publishes what it will resist with.
 
-#include "core/help.h"
+#include "core/command_line.h"
 #include "core/text.h"
 #include "firmware_host/daemon.h"
 
@@ -11,14 +11,19 @@
 
 enum { EXIT_DONE, EXIT_FAILED, EXIT_USAGE };
 
-enum { CHECK = 256, JSON };
+struct options {
+    const char *config;
+    bool        check, json, quiet;
+};
 
-static const struct dig_option options[] = {
-    { "config", 'c', "FILE", NULL, "the configuration, YAML" },
-    { "check", CHECK, NULL, NULL,
-      "load everything the configuration names, say what was found, exit" },
-    { "json", JSON, NULL, NULL, "say that as JSON; with --check" },
-    { "quiet", 'q', NULL, NULL, "no status line on a terminal" },
+#define INTO(field) DIG_INTO(struct options, field)
+
+static const struct dig_option known[] = {
+    { "config", "FILE", NULL, "the configuration, YAML", INTO(config), .letter = 'c' },
+    { "check", NULL, NULL, "load everything the configuration names, say what was found, exit",
+      INTO(check) },
+    { "json", NULL, NULL, "say that as JSON; with --check", INTO(json) },
+    { "quiet", NULL, NULL, "no status line on a terminal", INTO(quiet), .letter = 'q' },
 };
 
 static const struct dig_program program = {
@@ -37,8 +42,8 @@ static const struct dig_program program = {
                             "lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm\n" },
     .exit_status = "0  done\n1  the work failed\n"
                    "2  bad usage, or a file that is not as it should be\n",
-    .options     = sizeof options / sizeof options[0],
-    .option      = options,
+    .options     = sizeof known / sizeof known[0],
+    .option      = known,
 };
 
 // Lines name files and what stands in them: nothing of that may command a terminal.
@@ -86,40 +91,28 @@ static int bad_usage(const char *const what)
 
 int main(const int argc, char *argv[])
 {
-    struct dig_error error  = { "" };
-    const char      *config = NULL;
-    bool             check  = false;
-    bool             json   = false;
-    bool             quiet  = false;
-    for (int option; (option = dig_option_next(&program, &program.self, argc, argv, &error)) !=
-                     DIG_OPTION_END;) {
-        switch (option) {
-        case 'c': config = optarg; break;
-        case CHECK: check = true; break;
-        case JSON: json = true; break;
-        case 'q': quiet = true; break;
-        case DIG_OPTION_HELP: dig_help_print(&program, &program.self, stdout); return EXIT_DONE;
-        case DIG_OPTION_VERSION: (void)puts("digsightd " DIG_VERSION); return EXIT_DONE;
-        default: return bad_usage(error.text);
-        }
+    struct dig_error error = { "" };
+    struct options   o     = { .config = NULL };
+    if (dig_options_read(&program, argc, argv, &o, &error) == NULL) {
+        return bad_usage(error.text);
     }
-    if (config == NULL || optind < argc || (json && !check)) {
-        return bad_usage(config == NULL  ? "no configuration, expected -c CONFIG.yaml"
-                         : optind < argc ? "unknown argument"
-                                         : "--json: expected with --check only");
+    if (o.config == NULL || optind < argc || (o.json && !o.check)) {
+        return bad_usage(o.config == NULL ? "no configuration, expected -c CONFIG.yaml"
+                         : optind < argc  ? "unknown argument"
+                                          : "--json: expected with --check only");
     }
     struct dig_daemon *daemon = NULL;
-    enum dig_status    status = dig_daemon_create(config, &daemon, &error);
+    enum dig_status    status = dig_daemon_create(o.config, &daemon, &error);
     if (status != DIG_OK) {
         return fail(status, &error);
     }
-    if (json) {
+    if (o.json) {
         dig_daemon_describe_json(daemon, stdout);
     } else {
-        dig_daemon_describe(daemon, check ? print : say);
+        dig_daemon_describe(daemon, o.check ? print : say);
     }
-    if (!check) {
-        const bool               terminal = !quiet && isatty(STDERR_FILENO) != 0;
+    if (!o.check) {
+        const bool               terminal = !o.quiet && isatty(STDERR_FILENO) != 0;
         const struct dig_console console  = { .say  = terminal ? say_above : say,
                                               .show = terminal ? show : NULL };
         status                            = dig_daemon_run(daemon, &console, &error);

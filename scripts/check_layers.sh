@@ -23,8 +23,8 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
 core                   approach bed bed_plan chance command_line contact curve did_you_mean effect entry_set error
-                       geometry gravel_match ground help linkage log_normal machine model name observation outline
-                       part recording regular sample scene sha256 shell similar sort status table_step text units vec2
+                       geometry gravel_match ground linkage log_normal machine model name observation outline part
+                       recording regular sample scene sha256 shell similar sort status table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve

@@ -1,7 +1,6 @@
 // digtable: the analyst's tool. Computes digs and tables of digs, and shows what a table holds.
 
 #include "tools/digtable/commands.h"
-#include "tools/digtable/help.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -36,34 +35,29 @@ static void catch_signals(void)
     (void)sigaction(SIGTERM, &action, NULL);
 }
 
-static int run(const struct dig_command *const command, const struct dig_arguments *const a)
+static int run(const struct dig_arguments *const a)
 {
     size_t i = 0;
-    while (strcmp(commands[i].name, command->name) != 0) {
+    while (strcmp(commands[i].name, a->command->name) != 0) {
         i++;
     }
     if (a->positionals > commands[i].most) {
         return dig_cli_bad_usage("%s: one argument too many", a->positional[commands[i].most]);
     }
     if (a->positionals < commands[i].least) {
-        return dig_cli_bad_usage("%s: expected %s", command->name, command->usage);
+        return dig_cli_bad_usage("%s: expected %s", a->command->name, a->command->usage);
     }
     return commands[i].run(a);
 }
 
 int main(const int argc, char **const argv)
 {
-    struct dig_error                error   = { "" };
-    const struct dig_command *const command = dig_command_find(dig_cli_program(), argv[1], &error);
-    if (command == NULL) {
-        return dig_cli_bad_usage("%s", error.text);
-    }
     struct dig_arguments a;
-    const int            code = dig_arguments_read(command, argc, argv, &a);
+    const int            code = dig_arguments_read(argc, argv, &a);
     if (code != EXIT_DONE) {
         return code;
     }
     a.stop = &stop_requested;
     catch_signals();
-    return run(command, &a);
+    return run(&a);
 }

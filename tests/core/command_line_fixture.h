@@ -5,7 +5,13 @@
 
 #include "core/command_line.h"
 
-enum { BEANS = 256, MILK, JSON, JSON_FILE };
+struct cup {
+    uint64_t    beans;
+    double      heat_C;
+    bool        milk, json, fast, sour;
+    const char *output, *json_file;
+    char        grind; // 'a' to 'z'
+};
 
 extern const struct dig_program coffee;
 

@@ -6,10 +6,11 @@
 #include "tests/testlib.h"
 
 #include <getopt.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-// What the line's options are, in order, with their values; what is wrong with them at the end.
+// What the line makes of the cup, the command, and what is no option; or what is wrong with it.
 static const char *read_line(const char *const line)
 {
     static char text[200], seen[400];
@@ -19,34 +20,42 @@ static const char *read_line(const char *const line)
     for (char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
         argv[argc++] = word;
     }
-    struct dig_error                error   = { "" };
-    const struct dig_command *const command = dig_command_find(&coffee, argv[1], &error);
-    optind                                  = 0;
-    seen[0]                                 = '\0';
-    for (int option = 0; command != NULL && option != DIG_OPTION_END && error.text[0] == '\0';) {
-        option            = dig_option_next(&coffee, command, argc, argv, &error);
-        const size_t used = strlen(seen);
-        if (option != DIG_OPTION_END && option != DIG_OPTION_WRONG) {
-            (void)snprintf(seen + used, sizeof seen - used, "%d=%s ", option,
-                           optarg != NULL ? optarg : "");
-        }
+    struct dig_error error = { "" };
+    struct cup       cup   = {
+                .beans = 1, .heat_C = 200.0, .sour = true, .output = "", .json_file = "", .grind = '-'
+    };
+    const struct dig_command *const command = dig_options_read(&coffee, argc, argv, &cup, &error);
+    if (command == NULL) {
+        (void)snprintf(seen, sizeof seen, "%s", error.text);
+        return seen;
     }
-    for (int i = optind; i < argc && error.text[0] == '\0'; i++) {
-        (void)snprintf(seen + strlen(seen), sizeof seen - strlen(seen), "%s ", argv[i]);
+    (void)snprintf(seen, sizeof seen, "%s: %" PRIu64 " %g %d%d%d%d %c<%s<%s", command->name,
+                   cup.beans, cup.heat_C, cup.milk, cup.json, cup.fast, cup.sour, cup.grind,
+                   cup.output, cup.json_file);
+    for (int i = optind; i < argc; i++) {
+        (void)snprintf(seen + strlen(seen), sizeof seen - strlen(seen), " %s", argv[i]);
     }
-    return strcat(seen, error.text);
+    return seen;
 }
 
 TEST(options_are_those_of_the_command)
 {
     assert_string_equal(read_line("coffee brew cup --beans 3 pot --milk -o x"),
-                        "256=3 257= 111=x cup pot ");
-    assert_string_equal(read_line("coffee brew --json cup"), "258= cup ");
-    assert_string_equal(read_line("coffee roast --json file sack -f"), "259=file 102= sack ");
-    assert_string_equal(read_line("coffee roast --be=7"), "256=7 ");
-    assert_string_equal(read_line("coffee roast -- --json"), "--json ");
-    assert_string_equal(read_line("coffee --help"), "104= expected a command: brew or roast");
-    assert_string_equal(read_line("coffee brew -h --version"), "104= 1= ");
+                        "brew: 3 200 1001 -<x< cup pot");
+    assert_string_equal(read_line("coffee brew --json cup"), "brew: 1 200 0101 -<< cup");
+    assert_string_equal(read_line("coffee roast --json file sack -f"),
+                        "roast: 1 200 0011 -<<file sack");
+    assert_string_equal(read_line("coffee roast --be=7"), "roast: 7 200 0001 -<<");
+    assert_string_equal(read_line("coffee roast -- --json"), "roast: 1 200 0001 -<< --json");
+}
+
+TEST(values_go_where_their_rows_say)
+{
+    assert_string_equal(read_line("coffee roast --heat 2.5e2 --bitter --grind f --cups 12"),
+                        "roast: 12 250 0000 f<<");
+    assert_string_equal(
+        read_line("coffee roast --heat 150 --heat 160 --beans 18446744073709551615"),
+        "roast: 18446744073709551615 160 0001 -<<");
 }
 
 TEST(what_is_wrong_is_said_with_what_was_meant)
@@ -67,6 +76,14 @@ TEST(what_is_wrong_is_said_with_what_was_meant)
         { "coffee brew cup -o", "-o: needs a value" },
         { "coffee brew --milk=3", "--milk=3: takes no value" },
         { "coffee --milk", "coffee takes no --milk" },
+        { "coffee brew --beans x", "--beans x: expected a whole number" },
+        { "coffee brew --beans -1", "--beans -1: expected a whole number" },
+        { "coffee brew --beans 1.5", "--beans 1.5: expected a whole number" },
+        { "coffee roast --cups 0", "--cups 0: expected 1 to 12" },
+        { "coffee roast --cups 13", "--cups 13: expected 1 to 12" },
+        { "coffee roast --heat 149.9", "--heat 149.9: expected 150 to 250 C" },
+        { "coffee roast --heat nan", "--heat nan: expected 150 to 250 C" },
+        { "coffee roast --grind 7", "--grind 7: expected a letter" },
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_string_equal(read_line(wrong[i][0]), wrong[i][1]);
@@ -75,13 +92,16 @@ TEST(what_is_wrong_is_said_with_what_was_meant)
 
 TEST(some_programs_are_called_without_command_too)
 {
-    struct dig_program both   = coffee;
-    char               name[] = "coffee";
-    char              *argv[] = { name, NULL };
-    struct dig_error   error  = { "" };
-    both.alone                = true;
-    optind                    = 0;
-    assert_int_equal(dig_option_next(&both, &both.self, 1, argv, &error), DIG_OPTION_END);
+    struct dig_program both       = coffee;
+    struct cup         cup        = { .beans = 1 };
+    char               words[][8] = { "coffee", "pot" };
+    struct dig_error   error      = { "" };
+    both.alone                    = true;
+    for (int argc = 1; argc <= 2; argc++) {
+        char *argv[] = { words[0], argc == 1 ? NULL : words[1], NULL };
+        assert_ptr_equal(dig_options_read(&both, argc, argv, &cup, &error), &both.self);
+        assert_int_equal(optind, 1);
+    }
     assert_string_equal(error.text, "");
 }
 
@@ -94,5 +114,17 @@ TEST(a_number_is_all_of_its_text_and_in_range)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_false(dig_number_read(bad[i], 0.0, 3.0, &value));
         assert_close(value, -15.0, 0.0);
+    }
+}
+
+TEST(a_count_is_a_whole_number_in_range)
+{
+    uint64_t value = 0;
+    assert_true(dig_count_read("3", 3, 3, &value));
+    assert_int_equal(value, 3);
+    static const char *const bad[] = { "", "x", "3x", "3 4", " 3", "+3", "-3", "2", "4", "3.0" };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_false(dig_count_read(bad[i], 3, 3, &value));
+        assert_int_equal(value, 3);
     }
 }

@@ -31,8 +31,9 @@ refused "dig without a density" "--density missing" dig $scene --trajectory scra
 refused "generate without -o" "-o TABLE.sqlite missing" generate $scene $grid
 refused "a friction that is none" "--friction high: expected 0 to 3" dig $scene --friction high
 refused "a friction that is nan" "--friction nan: expected 0 to 3" dig $scene --friction nan
-refused "a density in g/cm3" "--density 2.5: expected kg/m3, 100 to 20000" dig $scene --density 2.5
+refused "a density in g/cm3" "--density 2.5: expected 100 to 20000 kg/m3" dig $scene --density 2.5
 refused "a negative seed" "--seed -1: expected a whole number" dig $scene --seed -1
+refused "a seed that no table keeps" "--seed 9223372036854775808: expected a whole number below 2.63" dig $scene --seed 9223372036854775808
 refused "no workers" "--jobs 0: expected 1 to" generate $scene $grid -j 0
 refused "a shard of none" "--shard 4/3: expected I/N" generate $scene $grid --shard 4/3
 refused "a shard that is no fraction" "--shard 3: expected I/N" generate $scene $grid --shard 3
@@ -111,7 +112,7 @@ refused "an attack that starts in the bed" 'grid, depth 1, attack 45 deg: trajec
 sed -i 's/3.2,0/1,45/; s/1,0$/1,45/' "$work/curves.csv"
 refused "import of a dig that cannot begin" 'curves.csv:2: trajectory scrape, depth 1, attack 45 deg: the bucket starts .* m in the ground' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
 refused "a dig that leaves the box" 'trajectory scrape: at .* outside box_m.z' dig "$work/s.yaml" "${dig[@]}" --depth 2.5 -o "$out"
-refused "a depth out of range" '[-]-depth 9: expected a factor, 0.2 to 3' dig $scene "${dig[@]}" --depth 9 -o "$out"
+refused "a depth out of range" '[-]-depth 9: expected 0.2 to 3' dig $scene "${dig[@]}" --depth 9 -o "$out"
 
 # Beds.
 printf 'x_m,y_m,z_m\n0,0,0\n' >"$work/bed.csv"

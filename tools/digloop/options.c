@@ -2,32 +2,13 @@
 
 #include "core/command_line.h"
 #include "core/did_you_mean.h"
-#include "core/help.h"
 #include "core/units.h"
 #include "files/text/whole.h"
 
 #include <getopt.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-// A letter is an option's short name, too.
-enum {
-    OUTPUT     = 'o',
-    QUIET      = 'q',
-    IDENTIFIED = 256,
-    TRAJECTORY,
-    MACHINE,
-    MODEL,
-    MOMENT_ALONE,
-    MEASURED,
-    DEPTH,
-    ATTACK,
-    EFFECTS,
-    JSON,
-    HTML,
-    ADD,
-};
+#define INTO(field) DIG_INTO(struct digloop_options, field)
 
 static const struct dig_command commands[] = {
     { "identify", "TABLE.sqlite RECORDING... [OPTION]...",
@@ -85,30 +66,37 @@ static const struct dig_command commands[] = {
 };
 
 static const struct dig_option known[] = {
-    { "identified", IDENTIFIED, "ID.json", " predict ",
-      "the gravel, as `digloop identify --json` wrote it" },
-    { "trajectory", TRAJECTORY, "NAME", " identify ", "take the digs along one only" },
-    { "trajectory", TRAJECTORY, "NAME", " predict ", "the dig to predict" },
-    { "machine", MACHINE, "MACHINE.yaml", " identify ", "the recordings are of this machine" },
-    { "machine", MACHINE, "MACHINE.yaml", " predict ",
-      "the measured digs are of this machine; peak and energy by it, too" },
-    { "model", MODEL, "MODEL.json", " identify predict ",
-      "table and machine with the effects that a trace has added" },
-    { "moment-alone", MOMENT_ALONE, NULL, " identify ", "leave the forces out" },
-    { "measured", MEASURED, "RECORDING", " predict ", "compare with digs measured" },
-    { "depth", DEPTH, "F", " predict ",
-      "factor on how far the tooth goes down in the first phase, 0.2 to 3 (default 1)" },
-    { "attack-deg", ATTACK, "A", " predict ",
-      "the bucket turned about its tooth, -45 to 45, positive curls (default 0)" },
-    { "output", OUTPUT, "CURVE.csv", " predict ", "also write the predicted curve" },
-    { "effects", EFFECTS, "EFFECTS.sqlite", " trace design ",
-      "beds that hold effects of the soil (default: TABLE_effects.sqlite beside the table)" },
-    { "json", JSON, NULL, " identify predict design ", "the result as JSON on standard output" },
-    { "json", JSON, "OUT.json", " trace check ", "write the result as JSON" },
-    { "html", HTML, "OUT.html", " trace check ", "write it as a page with plots" },
-    { "add", ADD, "MODEL.json", " trace ",
-      "write the model with the effect added, for digsightd and --model" },
-    { "quiet", QUIET, NULL, " trace check ", "nothing for people, only what goes wrong" },
+    { "identified", "ID.json", " predict ", "the gravel, as `digloop identify --json` wrote it",
+      INTO(identified) },
+    { "trajectory", "NAME", " identify ", "take the digs along one only", INTO(trajectory) },
+    { "trajectory", "NAME", " predict ", "the dig to predict", INTO(trajectory) },
+    { "machine", "MACHINE.yaml", " identify ", "the recordings are of this machine",
+      INTO(machine) },
+    { "machine", "MACHINE.yaml", " predict ",
+      "the measured digs are of this machine; peak and energy by it, too", INTO(machine) },
+    { "model", "MODEL.json", " identify predict ",
+      "table and machine with the effects that a trace has added", INTO(model) },
+    { "moment-alone", NULL, " identify ", "leave the forces out", INTO(moment_alone) },
+    { "measured", "RECORDING", " predict ", "compare with digs measured", INTO(measured) },
+    { "depth", "F", " predict ",
+      "factor on how far the tooth goes down in the first phase, 0.2 to 3 (default 1)",
+      INTO(approach.depth), DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST },
+    { "attack-deg", "A", " predict ",
+      "the bucket turned about its tooth, -45 to 45, positive curls (default 0)",
+      INTO(approach.attack_rad), -45.0, 45.0, "deg" },
+    { "output", "CURVE.csv", " predict ", "also write the predicted curve", INTO(out),
+      .letter = 'o' },
+    { "effects", "EFFECTS.sqlite", " trace design ",
+      "beds that hold effects of the soil (default: TABLE_effects.sqlite beside the table)",
+      INTO(effects) },
+    { "json", NULL, " identify predict design ", "the result as JSON on standard output",
+      INTO(json) },
+    { "json", "OUT.json", " trace check ", "write the result as JSON", INTO(json_out) },
+    { "html", "OUT.html", " trace check ", "write it as a page with plots", INTO(html) },
+    { "add", "MODEL.json", " trace ",
+      "write the model with the effect added, for digsightd and --model", INTO(add) },
+    { "quiet", NULL, " trace check ", "nothing for people, only what goes wrong", INTO(quiet),
+      .letter = 'q' },
 };
 
 static const struct dig_program program = {
@@ -133,8 +121,7 @@ static const struct dig_program program = {
 static int results_on_stdout(const struct digloop_options *const o)
 {
     return (int)dig_out_is_stdout(o->out) + (int)dig_out_is_stdout(o->html) +
-           (int)dig_out_is_stdout(o->add) +
-           (o->json_out != NULL ? (int)dig_out_is_stdout(o->json_out) : (int)o->json);
+           (int)dig_out_is_stdout(o->add) + (int)dig_out_is_stdout(o->json_out) + (int)o->json;
 }
 
 static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
@@ -165,68 +152,19 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
                : dig_error_set(error, DIG_EINVAL, "%s: expected %s", o->command, of[i].expected);
 }
 
-// One option into *o.
-static enum dig_status take(const int option, struct digloop_options *const o,
-                            struct dig_error *const error)
-{
-    switch (option) {
-    case IDENTIFIED: o->identified = optarg; break;
-    case TRAJECTORY: o->trajectory = optarg; break;
-    case MACHINE: o->machine = optarg; break;
-    case MODEL: o->model = optarg; break;
-    case MOMENT_ALONE: o->moment_alone = true; break;
-    case OUTPUT: o->out = optarg; break;
-    case MEASURED: o->measured = optarg; break;
-    case DEPTH:
-        if (!dig_number_read(optarg, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST,
-                             &o->approach.depth)) {
-            return dig_error_set(error, DIG_EINVAL, "--depth %s: expected 0.2 to 3", optarg);
-        }
-        break;
-    case ATTACK:
-        if (!dig_number_read(optarg, -45.0, 45.0, &o->approach.attack_rad)) {
-            return dig_error_set(error, DIG_EINVAL, "--attack-deg %s: expected -45 to 45", optarg);
-        }
-        o->approach.attack_rad *= DIG_RAD_PER_DEG;
-        break;
-    case EFFECTS: o->effects = optarg; break;
-    case JSON:
-        o->json     = true;
-        o->json_out = optarg;
-        break;
-    case HTML: o->html = optarg; break;
-    case ADD: o->add = optarg; break;
-    case QUIET: o->quiet = true; break;
-    default: return DIG_EINVAL; // said already
-    }
-    return DIG_OK;
-}
-
 enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_options *const options,
                               struct dig_error *const error)
 {
-    const struct dig_command *const command = dig_command_find(&program, argv[1], error);
+    struct digloop_options          o       = { .approach = dig_approach_plain() };
+    const struct dig_command *const command = dig_options_read(&program, argc, argv, &o, error);
     if (command == NULL) {
         return DIG_EINVAL;
-    }
-    struct digloop_options o = { .command = command->name, .approach = dig_approach_plain() };
-    for (int c; (c = dig_option_next(&program, command, argc, argv, error)) != DIG_OPTION_END;) {
-        if (c == DIG_OPTION_HELP) {
-            dig_help_print(&program, command, stdout);
-            exit(EXIT_SUCCESS);
-        }
-        if (c == DIG_OPTION_VERSION) {
-            (void)puts("digloop " DIG_VERSION);
-            exit(EXIT_SUCCESS);
-        }
-        const enum dig_status status = take(c, &o, error);
-        if (status != DIG_OK) {
-            return status;
-        }
     }
     if (optind >= argc) {
         return dig_error_set(error, DIG_EINVAL, "%s: expected %s", command->name, command->usage);
     }
+    o.command = command->name;
+    o.approach.attack_rad *= DIG_RAD_PER_DEG; // degrees until here
     o.table                      = argv[optind];
     o.recording                  = argv + optind + 1;
     o.recordings                 = argc - optind - 1;

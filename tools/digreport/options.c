@@ -2,16 +2,14 @@
 
 #include "core/command_line.h"
 #include "core/did_you_mean.h"
-#include "core/help.h"
 #include "files/text/whole.h"
 
 #include <getopt.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TABLE = 256, MACHINE, MODEL, TRUTH, RECORDING, TITLE, HTML, CSV, JSON, QUIET = 'q' };
+#define INTO(field) DIG_INTO(struct digreport_options, field)
 
 static const struct dig_command commands[] = {
     { "shift", "LOG.lcm... [OPTION]...",
@@ -24,20 +22,53 @@ static const struct dig_command commands[] = {
       "          --machine config/machines/zx200_trench.yaml day.lcm\n" },
 };
 
+static enum dig_status take_truth(const char *const text, void *const into,
+                                  struct dig_error *const error)
+{
+    struct digreport_options *const o   = into;
+    struct dig_gravel               g   = { { 0.0 } };
+    const char                     *at  = text;
+    char                           *end = NULL;
+    for (int a = 0; a < DIG_AXES; a++) {
+        g.value[a] = strtod(at, &end);
+        if (end == at || *end != (a + 1 < DIG_AXES ? ',' : '\0') || !isfinite(g.value[a])) {
+            return dig_error_set(error, DIG_EINVAL, "--truth %s: expected FRICTION,ROLLING,DENSITY",
+                                 text);
+        }
+        at = end + 1;
+    }
+    o->truth       = g;
+    o->truth_known = true;
+    return DIG_OK;
+}
+
+static enum dig_status take_recording(const char *const path, void *const into,
+                                      struct dig_error *const error)
+{
+    struct digreport_options *const o = into;
+    if (o->recordings == sizeof o->recording / sizeof o->recording[0]) {
+        return dig_error_set(error, DIG_EINVAL, "--recording: expected at most 8");
+    }
+    o->recording[o->recordings++] = path;
+    return DIG_OK;
+}
+
 static const struct dig_option known[] = {
-    { "table", TABLE, "TABLE.sqlite", NULL, "what the daemon predicted from" },
-    { "machine", MACHINE, "MACHINE.yaml", NULL, "the machine that dug" },
-    { "model", MODEL, "MODEL.json", NULL, "the model that the daemon ran with" },
-    { "truth", TRUTH, "FRICTION,ROLLING,DENSITY", " digreport ", "the gravel, where it is known" },
-    { "recording", RECORDING, "RECORDING.csv", " digreport ",
-      "a force recording that was fed to the rig, drawn beside; up to 8" },
-    { "title", TITLE, "TEXT", NULL, "of the page" },
-    { "html", HTML, "PAGE.html", NULL, "write a page with plots" },
-    { "csv", CSV, "DIGS.csv", " shift ", "write a line a dig" },
-    { "json", JSON, "FILE.json", NULL,
+    { "table", "TABLE.sqlite", NULL, "what the daemon predicted from", INTO(table) },
+    { "machine", "MACHINE.yaml", NULL, "the machine that dug", INTO(machine) },
+    { "model", "MODEL.json", NULL, "the model that the daemon ran with", INTO(model) },
+    { "truth", "FRICTION,ROLLING,DENSITY", " digreport ", "the gravel, where it is known",
+      .take = take_truth },
+    { "recording", "RECORDING.csv", " digreport ",
+      "a force recording that was fed to the rig, drawn beside; up to 8", .take = take_recording },
+    { "title", "TEXT", NULL, "of the page", INTO(title) },
+    { "html", "PAGE.html", NULL, "write a page with plots", INTO(html) },
+    { "csv", "DIGS.csv", " shift ", "write a line a dig", INTO(csv) },
+    { "json", "FILE.json", NULL,
       "write the results as JSON, - for standard output; what people read goes to standard error "
-      "then" },
-    { "quiet", QUIET, NULL, NULL, "nothing for people, only what goes wrong" },
+      "then",
+      INTO(json) },
+    { "quiet", NULL, NULL, "nothing for people, only what goes wrong", INTO(quiet), .letter = 'q' },
 };
 
 static const struct dig_program program = {
@@ -58,49 +89,6 @@ static const struct dig_program program = {
     .options     = sizeof known / sizeof known[0],
     .option      = known,
 };
-
-static enum dig_status parse_truth(const char *const text, struct dig_gravel *const truth,
-                                   struct dig_error *const error)
-{
-    struct dig_gravel g   = { { 0.0 } };
-    const char       *at  = text;
-    char             *end = NULL;
-    for (int a = 0; a < DIG_AXES; a++) {
-        g.value[a] = strtod(at, &end);
-        if (end == at || *end != (a + 1 < DIG_AXES ? ',' : '\0') || !isfinite(g.value[a])) {
-            return dig_error_set(error, DIG_EINVAL, "--truth %s: expected FRICTION,ROLLING,DENSITY",
-                                 text);
-        }
-        at = end + 1;
-    }
-    *truth = g;
-    return DIG_OK;
-}
-
-// One option into *o.
-static enum dig_status take(const int option, struct digreport_options *const o,
-                            struct dig_error *const error)
-{
-    switch (option) {
-    case TABLE: o->table = optarg; break;
-    case MACHINE: o->machine = optarg; break;
-    case MODEL: o->model = optarg; break;
-    case TITLE: o->title = optarg; break;
-    case HTML: o->html = optarg; break;
-    case CSV: o->csv = optarg; break;
-    case JSON: o->json = optarg; break;
-    case QUIET: o->quiet = true; break;
-    case TRUTH: o->truth_known = true; return parse_truth(optarg, &o->truth, error);
-    case RECORDING:
-        if (o->recordings == sizeof o->recording / sizeof o->recording[0]) {
-            return dig_error_set(error, DIG_EINVAL, "--recording: expected at most 8");
-        }
-        o->recording[o->recordings++] = optarg;
-        break;
-    default: return DIG_EINVAL; // said already
-    }
-    return DIG_OK;
-}
 
 static enum dig_status check_shift(const struct digreport_options *const o,
                                    struct dig_error *const               error)
@@ -139,33 +127,21 @@ enum dig_status digreport_parse(const int argc, char *argv[],
                                 struct digreport_options *const options,
                                 struct dig_error *const         error)
 {
-    const bool shift = argc > 1 && strcmp(argv[1], commands[0].name) == 0;
-
-    const struct dig_command *const command = shift ? &commands[0] : &program.self;
-    struct digreport_options        o       = { .shift = shift };
-    for (int c; (c = dig_option_next(&program, command, argc, argv, error)) != DIG_OPTION_END;) {
-        if (c == DIG_OPTION_HELP) {
-            dig_help_print(&program, command, stdout);
-            exit(EXIT_SUCCESS);
-        }
-        if (c == DIG_OPTION_VERSION) {
-            (void)puts("digreport " DIG_VERSION);
-            exit(EXIT_SUCCESS);
-        }
-        const enum dig_status status = take(c, &o, error);
-        if (status != DIG_OK) {
-            return status;
-        }
+    struct digreport_options        o       = { .shift = false };
+    const struct dig_command *const command = dig_options_read(&program, argc, argv, &o, error);
+    if (command == NULL) {
+        return DIG_EINVAL;
     }
+    o.shift                      = command == &commands[0];
     o.log                        = argv + optind;
     o.logs                       = (size_t)(argc - optind);
-    const enum dig_status status = shift ? check_shift(&o, error) : check_runs(&o, error);
+    const enum dig_status status = o.shift ? check_shift(&o, error) : check_runs(&o, error);
     if (status != DIG_OK) {
         return status;
     }
     if (dig_out_is_stdout(o.html) + dig_out_is_stdout(o.csv) + dig_out_is_stdout(o.json) > 1) {
         return dig_error_set(error, DIG_EINVAL, "%stwo results on standard output, expected one",
-                             shift ? "shift: " : "");
+                             o.shift ? "shift: " : "");
     }
     *options = o;
     return DIG_OK;

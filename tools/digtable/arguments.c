@@ -1,19 +1,17 @@
 #include "tools/digtable/arguments.h"
 
 #include "core/did_you_mean.h"
-#include "core/help.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "files/job_plan.h"
 #include "offline_dem/device/engine_cuda.h"
 #include "offline_dem/reference/engine_ode.h"
 #include "offline_dem/sweep/sweep.h"
-#include "tools/digtable/help.h"
 
 #include <getopt.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,73 +41,50 @@ int dig_cli_work_failed(const enum dig_status status, const struct dig_error *co
     return status == DIG_EINVAL || status == DIG_ESCHEMA ? EXIT_BAD_INPUT : EXIT_WORK_FAILED;
 }
 
-bool dig_cli_count(const char *const text, const unsigned long least, const unsigned long most,
-                   unsigned long *const value)
-{
-    char               *end    = NULL;
-    const unsigned long number = strtoul(text, &end, 10);
-    if (text[0] < '0' || text[0] > '9' || *end != '\0' || number < least || number > most) {
-        return false;
-    }
-    *value = number;
-    return true;
-}
-
-static bool parse_channel(const char *const text, enum dig_channel *const channel)
+static enum dig_status take_channel(const char *const text, void *const into,
+                                    struct dig_error *const error)
 {
     static const char *const names[DIG_CHANNELS] = { "My", "Fx", "Fz", "carried" };
     for (int c = 0; c < DIG_CHANNELS; c++) {
         if (strcmp(text, names[c]) == 0) {
-            *channel = (enum dig_channel)c;
-            return true;
+            ((struct dig_arguments *)into)->channel = (enum dig_channel)c;
+            return DIG_OK;
         }
     }
-    return false;
+    return dig_error_set(error, DIG_EINVAL, "--channel %s: expected My, Fx, Fz or carried", text);
 }
 
 // "2/8": the second of eight.
-static bool parse_shard(const char *const text, struct dig_arguments *const a)
+static enum dig_status take_shard(const char *const text, void *const into,
+                                  struct dig_error *const error)
 {
-    char              first[16];
-    const char *const slash  = strchr(text, '/');
-    const size_t      length = slash != NULL ? (size_t)(slash - text) : sizeof first;
-    unsigned long     shard  = 0;
-    unsigned long     shards = 0;
-    if (length >= sizeof first) {
-        return false;
-    }
-    memcpy(first, text, length);
-    first[length] = '\0';
-    if (!dig_cli_count(text + length + 1, 1, 1000000, &shards) ||
-        !dig_cli_count(first, 1, shards, &shard)) {
-        return false;
+    struct dig_arguments *const a = into;
+    char                        first[16];
+    uint64_t                    shard  = 0;
+    uint64_t                    shards = 0;
+    const char *const           slash  = strchr(text, '/');
+    const bool                  short_enough =
+        slash != NULL &&
+        snprintf(first, sizeof first, "%.*s", (int)(slash - text), text) < (int)sizeof first;
+    if (!short_enough || !dig_count_read(slash + 1, 1, 1000000, &shards) ||
+        !dig_count_read(first, 1, shards, &shard)) {
+        return dig_error_set(error, DIG_EINVAL, "--shard %s: expected I/N, I from 1 to N", text);
     }
     a->shard  = shard - 1;
     a->shards = shards;
-    return true;
+    return DIG_OK;
 }
 
-static unsigned long all_cores(void)
+static uint64_t all_cores(void)
 {
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return cores > 0 ? (unsigned long)cores : 1;
+    return cores > 0 ? (uint64_t)cores : 1;
 }
 
-static const char *take_approach(const int option, const char *const value,
-                                 struct dig_approach *const approach)
+static enum dig_status take_engine(const char *const value, void *const into,
+                                   struct dig_error *const error)
 {
-    if (option == OPTION_DEPTH) {
-        const bool ok = dig_number_read(value, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST,
-                                        &approach->depth);
-        return ok ? NULL : "a factor, 0.2 to 3";
-    }
-    const bool ok = dig_number_read(value, -45.0, 45.0, &approach->attack_rad);
-    approach->attack_rad *= DIG_RAD_PER_DEG;
-    return ok ? NULL : "degrees, -45 to 45";
-}
-
-static bool take_engine(const char *const value, struct dig_arguments *const a)
-{
+    struct dig_arguments *const a = into;
     static const struct {
         const char *name;
         struct dig_engine (*make)(void);
@@ -124,11 +99,177 @@ static bool take_engine(const char *const value, struct dig_arguments *const a)
         if (strcmp(value, engines[e].name) == 0) {
             a->engine      = engines[e].make;
             a->has_threads = engines[e].has_threads;
-            return true;
+            return DIG_OK;
         }
     }
-    return false;
+    return dig_error_set(error, DIG_EINVAL, "--engine %s: expected single, kernel, ode or cuda",
+                         value);
 }
+
+// --time 1:00:00 is two words for sbatch, --sbatch-arg one: then option is NULL.
+static enum dig_status add_words(struct dig_arguments *const a, const char *const option,
+                                 const char *const value, struct dig_error *const error)
+{
+    if (a->slurm_options + 2 > DIG_SLURM_OPTIONS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "%s %s: expected fewer words for sbatch",
+                             option != NULL ? option : "--sbatch-arg", value);
+    }
+    if (option != NULL) {
+        a->slurm_option[a->slurm_options++] = option;
+    }
+    a->slurm_option[a->slurm_options++] = value;
+    return DIG_OK;
+}
+
+static enum dig_status take_time(const char *const value, void *const into,
+                                 struct dig_error *const error)
+{
+    return add_words(into, "--time", value, error);
+}
+
+static enum dig_status take_partition(const char *const value, void *const into,
+                                      struct dig_error *const error)
+{
+    return add_words(into, "--partition", value, error);
+}
+
+static enum dig_status take_sbatch_arg(const char *const value, void *const into,
+                                       struct dig_error *const error)
+{
+    return add_words(into, NULL, value, error);
+}
+
+#define INTO(field) DIG_INTO(struct dig_arguments, field)
+
+static const struct dig_command commands[] = {
+    { "dig", "SCENE.yaml --trajectory NAME GRAVEL -o CSV [OPTION]...",
+      "Computes one dig; the curve is a force recording.",
+      "GRAVEL is --friction F --rolling R --density KGPM3.",
+      "digtable dig config/scenes/product.yaml --trajectory simpleA --friction .5 \\\n"
+      "         --rolling .5 --density 2500 -o dig.csv\n" },
+    { "generate", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
+      "Computes every dig of a grid, on all cores.",
+      "What the table holds already is not computed again, and Ctrl-C keeps all that is finished.",
+      "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
+      "         -o my.sqlite --time-limit 3600\n"
+      "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
+      "         -o part3.sqlite --shard 3/16\n" },
+    { "submit", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
+      "Computes a table in shards: here, or with --slurm as a job array.",
+      "Plans once, in the folder TABLE.sqlite.jobs, and merges the shards when all are done. The "
+      "same command again submits what failed, and only that.",
+      "digtable submit scene.yaml grid.yaml -o my.sqlite --slurm --tasks 500 \\\n"
+      "         --time 4:00:00\n"
+      "digtable submit scene.yaml grid.yaml -o my.sqlite\n" },
+    { "status", "TABLE.sqlite [OPTION]...\nFOLDER [OPTION]...",
+      "Shows how far a table of `digtable submit` is.", NULL,
+      "digtable status my.sqlite\n"
+      "digtable status my.sqlite.jobs --json\n" },
+    { "list", "TABLE.sqlite [OPTION]...", "Lists the entries and how many packings each has.", NULL,
+      "digtable list tables/product.sqlite\n" },
+    { "show",
+      "TABLE.sqlite ENTRY [OPTION]...\n"
+      "TABLE.sqlite GRAVEL [OPTION]...",
+      "Shows one curve of a table.",
+      "ENTRY is a number of `digtable list`, GRAVEL is --friction F --rolling R --density KGPM3. "
+      "The curve is drawn in the terminal, unless --csv or --json asks for its numbers.",
+      "digtable show tables/product.sqlite --friction .5 --rolling .5 \\\n"
+      "         --density 2500 --trajectory actual\n"
+      "digtable show tables/product.sqlite 0 --channel Fx\n" },
+    { "import", "CURVES.csv --map MAP.yaml -o TABLE.sqlite",
+      "Adds digs that something else measured or computed to a table.",
+      "The map says which column holds what.",
+      "digtable import curves.csv --map curve_map.yaml -o measured.sqlite\n" },
+    { "merge", "OUT.sqlite IN...", "Puts the runs of all tables, each once, into a new one.",
+      "IN is a table, or a folder of them. The bytes of the new table do not depend on their "
+      "order.",
+      "digtable merge my.sqlite part*.sqlite\n"
+      "digtable merge my.sqlite my.sqlite.jobs/shards\n" },
+    { "seal", "TABLE.sqlite", "Seals a table of an older version.",
+      "The table is checked, and shows a flipped bit from then on whenever it is read.",
+      "digtable seal old.sqlite\n" },
+    { "export", "TABLE.sqlite [OPTION]...", "Writes all curves of a table as CSV.", NULL,
+      "digtable export my.sqlite --runs -o runs.csv\n" },
+    { "check", "TABLE.sqlite [OPTION]...",
+      "Checks version, integrity, and every curve against the runs it was made of.", NULL,
+      "digtable check tables/product.sqlite\n"
+      "digtable check my.sqlite --complete --json\n" },
+};
+
+static const struct dig_option options[] = {
+    { "trajectory", "NAME", " dig show ",
+      "its name in the scene (show: the entry's first if not given)", INTO(trajectory) },
+    { "friction", "F", " dig show ", "friction of the gravel, 0 to 3",
+      INTO(gravel[DIG_AXIS_FRICTION]), 0.0, 3.0 },
+    { "rolling", "R", " dig show ", "rolling friction of the gravel, 0 to 3",
+      INTO(gravel[DIG_AXIS_ROLLING]), 0.0, 3.0 },
+    { "density", "KGPM3", " dig show ", "density of the grains in kg/m3",
+      INTO(gravel[DIG_AXIS_DENSITY_kgpm3]), 100.0, 20000.0, "kg/m3" },
+    { "depth", "F", " dig show ",
+      "factor on how far the tooth goes down in the first phase (default 1)", INTO(approach.depth),
+      DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST },
+    { "attack-deg", "A", " dig show ",
+      "the bucket turned about its tooth, positive curls (default 0)", INTO(approach.attack_rad),
+      -45.0, 45.0, "deg" },
+    { "young", "PA", " dig ", "Young's modulus instead of the scene's", INTO(young_Pa), 1.0, 1e12,
+      "Pa" },
+    { "seed", "N", " dig ", "of the bed (default 1)", INTO(seed) },
+    { "engine", "single|kernel|ode|cuda", " dig generate submit ",
+      "single (default): plain gravel in single precision; kernel, in double; ode, the slow "
+      "reference; cuda, on a graphics card, with the library of `make cuda`",
+      .take = take_engine },
+    { "bed", "BED.csv", " dig ", "dig this bed instead of pouring one", INTO(bed) },
+    { "save-bed", "BED.csv", " dig ", "write the bed before it is dug", INTO(save_bed) },
+    { "vtk", "DIR", " dig ", "write grains and bucket for ParaView into DIR", INTO(vtk) },
+    { "output", "CURVE.csv", " dig ", "the curve to write; -: standard output", INTO(output),
+      .letter = 'o' },
+    { "output", "TABLE.sqlite", " generate import submit ", "the table to make or to go on with",
+      INTO(output), .letter = 'o' },
+    { "output", "FILE.csv", " export ", "the file to write, not standard output", INTO(output),
+      .letter = 'o' },
+    { "jobs", "N", " generate submit ", "digs at a time here (default: one a core)", INTO(workers),
+      1, 4096, .letter = 'j' },
+    { "threads", "N", " dig generate ",
+      "of engines single and cuda in a bed of more than 30 000 grains (dig: one a core, generate: "
+      "1)",
+      INTO(threads), 1, 256 },
+    { "packings", "N", " generate submit ", "beds of each gravel, not the grid's number",
+      INTO(packings), 1, 1000 },
+    { "time-limit", "S", " generate ", "begin no dig after S seconds", INTO(time_limit_s), 0.0, 1e9,
+      "s" },
+    { "shard", "I/N", " generate ",
+      "the I-th of N parts alone; `digtable merge` puts the parts together", .take = take_shard },
+    { "slurm", NULL, " submit ", "submit to Slurm, do not compute here", INTO(slurm) },
+    { "tasks", "N", " submit ", "shards, each one task (default: a bed each, 1000)", INTO(tasks), 1,
+      DIG_JOB_TASKS_MAX },
+    { "time", "T", " submit ", "time limit of a task, as sbatch takes it", .take = take_time },
+    { "partition", "P", " submit ", "where Slurm is to run them", .take = take_partition },
+    { "sbatch-arg", "A", " submit ", "one more argument for sbatch; repeatable",
+      .take = take_sbatch_arg },
+    { "quiet", NULL, " dig generate import seal submit ", "no progress, only what goes wrong",
+      INTO(quiet), .letter = 'q' },
+    { "map", "MAP.yaml", " import ", "which column holds what", INTO(map) },
+    { "channel", "My|Fx|Fz|carried", " show ", "what to draw (default My)", .take = take_channel },
+    { "csv", NULL, " show ", "the curve as CSV", INTO(csv) },
+    { "json", NULL, " list check show status ", "the result as JSON", INTO(json) },
+    { "runs", NULL, " export ", "all runs behind the curves, instead", INTO(runs) },
+    { "effects", NULL, " export ", "those dug with an effect, instead", INTO(effects) },
+    { "complete", NULL, " check ", "holes in the grid and missing packings fail, too",
+      INTO(complete) },
+};
+
+static const struct dig_program program = {
+    .self        = { "digtable", "COMMAND ARGUMENT... [OPTION]...\nCOMMAND --help",
+                     "Computes how gravel resists bucket digs, and keeps the curves in a table.", NULL,
+                     "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
+                            "         -o my.sqlite\n"
+                            "digtable show my.sqlite --friction .5 --rolling .5 --density 2500\n" },
+    .exit_status = "0  done\n1  the work failed\n2  bad usage or bad input\n",
+    .commands    = sizeof commands / sizeof commands[0],
+    .command     = commands,
+    .options     = sizeof options / sizeof options[0],
+    .option      = options,
+};
 
 struct dig_engine dig_cli_engine(const struct dig_arguments *const a)
 {
@@ -137,90 +278,7 @@ struct dig_engine dig_cli_engine(const struct dig_arguments *const a)
     return engine;
 }
 
-// --time 1:00:00 is two words for sbatch, --sbatch-arg one.
-static const char *take_submit_option(const int option, const char *const value,
-                                      struct dig_arguments *const a)
-{
-    if (option == OPTION_TASKS) {
-        return dig_cli_count(value, 1, DIG_JOB_TASKS_MAX, &a->tasks) ? NULL : "1 to 10000";
-    }
-    if (option == OPTION_SLURM) {
-        a->slurm = true;
-        return NULL;
-    }
-    if (a->slurm_options + 2 > DIG_SLURM_OPTIONS_MAX) {
-        return "fewer words for sbatch";
-    }
-    if (option != OPTION_SBATCH_ARG) {
-        a->slurm_option[a->slurm_options++] = option == OPTION_TIME ? "--time" : "--partition";
-    }
-    a->slurm_option[a->slurm_options++] = value;
-    return NULL;
-}
-
-// One option into the arguments; NULL, or what was expected instead of its value.
-static const char *take_option(const int option, const char *const value,
-                               struct dig_arguments *const a)
-{
-    switch (option) {
-    case OPTION_OUTPUT: a->output = value; break;
-    case OPTION_QUIET: a->quiet = true; break;
-    case OPTION_JOBS: return dig_cli_count(value, 1, 4096, &a->workers) ? NULL : "1 to 4096";
-    case OPTION_THREADS: return dig_cli_count(value, 1, 256, &a->threads) ? NULL : "1 to 256";
-    case OPTION_TRAJECTORY: a->trajectory = value; break;
-    case OPTION_FRICTION:
-        return dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_FRICTION]) ? NULL : "0 to 3";
-    case OPTION_ROLLING:
-        return dig_number_read(value, 0.0, 3.0, &a->gravel[DIG_AXIS_ROLLING]) ? NULL : "0 to 3";
-    case OPTION_DENSITY:
-        return dig_number_read(value, 100.0, 20000.0, &a->gravel[DIG_AXIS_DENSITY_kgpm3])
-                   ? NULL
-                   : "kg/m3, 100 to 20000";
-    case OPTION_DEPTH:
-    case OPTION_ATTACK: return take_approach(option, value, &a->approach);
-    case OPTION_YOUNG:
-        return dig_number_read(value, 1.0, 1e12, &a->young_Pa) ? NULL : "Pa, 1 to 1e12";
-    case OPTION_SEED:
-        return dig_cli_count(value, 0, (unsigned long)INT64_MAX, &a->seed)
-                   ? NULL
-                   : "a whole number below 2^63";
-    case OPTION_ENGINE: return take_engine(value, a) ? NULL : "single, kernel, ode or cuda";
-    case OPTION_BED: a->bed = value; break;
-    case OPTION_SAVE_BED: a->save_bed = value; break;
-    case OPTION_VTK: a->vtk = value; break;
-    case OPTION_MAP: a->map = value; break;
-    case OPTION_PACKINGS: return dig_cli_count(value, 1, 1000, &a->packings) ? NULL : "1 to 1000";
-    case OPTION_TIME_LIMIT:
-        return dig_number_read(value, 0.0, 1e9, &a->time_limit_s) ? NULL : "seconds, >= 0";
-    case OPTION_SHARD: return parse_shard(value, a) ? NULL : "I/N, I from 1 to N";
-    case OPTION_TASKS:
-    case OPTION_SLURM:
-    case OPTION_TIME:
-    case OPTION_PARTITION:
-    case OPTION_SBATCH_ARG: return take_submit_option(option, value, a);
-    case OPTION_CHANNEL: return parse_channel(value, &a->channel) ? NULL : "My, Fx, Fz or carried";
-    case OPTION_CSV: a->csv = true; break;
-    case OPTION_JSON: a->json = true; break;
-    case OPTION_RUNS: a->runs = true; break;
-    case OPTION_EFFECTS: a->effects = true; break;
-    case OPTION_COMPLETE: a->complete = true; break;
-    default: break;
-    }
-    return NULL;
-}
-
-static const char *option_name(const int id)
-{
-    const struct dig_program *const program = dig_cli_program();
-    size_t                          i       = 0;
-    while (program->option[i].id != id) {
-        i++;
-    }
-    return program->option[i].name;
-}
-
-int dig_arguments_read(const struct dig_command *const command, const int argc, char **const argv,
-                       struct dig_arguments *const a)
+int dig_arguments_read(const int argc, char **const argv, struct dig_arguments *const a)
 {
     *a = (struct dig_arguments){
         .gravel       = { (double)NAN, (double)NAN, (double)NAN },
@@ -233,26 +291,14 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
         .time_limit_s = (double)INFINITY,
     };
     struct dig_error error = { "" };
-    for (int option; (option = dig_option_next(dig_cli_program(), command, argc, argv, &error)) !=
-                     DIG_OPTION_END;) {
-        if (option == DIG_OPTION_WRONG) {
-            return dig_cli_bad_usage("%s", error.text);
-        }
-        if (option == DIG_OPTION_HELP) {
-            dig_help_print(dig_cli_program(), command, stdout);
-            exit(EXIT_DONE);
-        }
-        if (option == DIG_OPTION_VERSION) {
-            (void)puts("digtable " DIG_VERSION);
-            exit(EXIT_DONE);
-        }
-        const char *const expected = take_option(option, optarg, a);
-        if (expected != NULL) {
-            (void)dig_error_set(&error, DIG_EINVAL, "--%s %s: expected %s", option_name(option),
-                                optarg, expected);
-            return dig_cli_bad_input(DIG_EINVAL, &error);
-        }
+    a->command             = dig_options_read(&program, argc, argv, a, &error);
+    if (a->command == NULL) {
+        return dig_cli_bad_usage("%s", error.text);
     }
+    if (a->seed > INT64_MAX) {
+        return dig_cli_bad_usage("--seed %" PRIu64 ": expected a whole number below 2^63", a->seed);
+    }
+    a->approach.attack_rad *= DIG_RAD_PER_DEG; // degrees until here
     for (; optind < argc; optind++) {
         if (a->positionals == DIG_POSITIONALS_MAX) {
             return dig_cli_bad_usage("%s: one argument too many", argv[optind]);
@@ -263,7 +309,7 @@ int dig_arguments_read(const struct dig_command *const command, const int argc, 
         return dig_cli_bad_usage("--threads: only --engine single and cuda have them");
     }
     if (a->threads == 0 && a->has_threads) {
-        a->threads = strcmp(command->name, "dig") == 0 ? all_cores() : 1;
+        a->threads = strcmp(a->command->name, "dig") == 0 ? all_cores() : 1;
     }
     return EXIT_DONE;
 }

@@ -20,20 +20,21 @@ struct dig_engine; // offline_dem/sweep/sweep.h
 
 /// Every option of every command, with its default where it was not given.
 struct dig_arguments {
-    const char         *positional[DIG_POSITIONALS_MAX];
-    int                 positionals;
-    const char         *output, *trajectory, *bed, *save_bed, *vtk, *map;
-    double              gravel[DIG_AXES];        // NaN: not given
-    struct dig_approach approach;                // plain: not given
-    double              young_Pa;                // NaN: the scene's
-    unsigned long       seed, workers, packings; // 0 packings: the grid's
-    unsigned long       threads;                 // of a large bed
-    unsigned long       shard, shards;           // from 0; 0 shards: all
-    unsigned long       tasks;                   // 0: not given
-    const char         *slurm_option[DIG_SLURM_OPTIONS_MAX];
-    size_t              slurm_options;
-    double              time_limit_s;
-    enum dig_channel    channel;
+    const struct dig_command *command;
+    const char               *positional[DIG_POSITIONALS_MAX];
+    int                       positionals;
+    const char               *output, *trajectory, *bed, *save_bed, *vtk, *map;
+    double                    gravel[DIG_AXES];        // NaN: not given
+    struct dig_approach       approach;                // plain: not given
+    double                    young_Pa;                // NaN: the scene's
+    uint64_t                  seed, workers, packings; // 0 packings: the grid's
+    uint64_t                  threads;                 // of a large bed
+    uint64_t                  shard, shards;           // from 0; 0 shards: all
+    uint64_t                  tasks;                   // 0: not given
+    const char               *slurm_option[DIG_SLURM_OPTIONS_MAX];
+    size_t                    slurm_options;
+    double                    time_limit_s;
+    enum dig_channel          channel;
     struct dig_engine (*engine)(void);
     bool has_threads; // the engine
     bool csv, json, runs, effects, complete, quiet, slurm;
@@ -43,14 +44,10 @@ struct dig_arguments {
 
 /// Reads the whole command line. EXIT_DONE, or what to exit with after a message; prints help or
 /// version and exits where asked to.
-int dig_arguments_read(const struct dig_command *command, int argc, char **argv,
-                       struct dig_arguments *a);
+int dig_arguments_read(int argc, char **argv, struct dig_arguments *a);
 
 /// The engine that --engine names.
 struct dig_engine dig_cli_engine(const struct dig_arguments *a);
-
-/// A whole number without sign, within the range.
-bool dig_cli_count(const char *text, unsigned long least, unsigned long most, unsigned long *value);
 
 /// Print to stderr and return the exit code: bad usage; bad input, which is the user's to mend but
 /// for a lack of memory; work that failed, be it for its input or not.

@@ -151,8 +151,8 @@ static size_t find_entry(const struct dig_arguments *const a, const struct dig_c
 {
     const size_t entries = dig_listed_count(set);
     if (a->positionals == 2) {
-        unsigned long number = 0;
-        return dig_cli_count(a->positional[1], 0, entries - 1, &number) ? number : entries;
+        uint64_t number = 0;
+        return dig_count_read(a->positional[1], 0, entries - 1, &number) ? number : entries;
     }
     size_t e = 0;
     for (; e < entries; e++) {

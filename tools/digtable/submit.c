@@ -11,6 +11,7 @@
 #include "tools/digtable/slurm.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,7 +89,7 @@ static enum dig_status compute(const struct dig_arguments *const a, struct submi
 {
     char workers[24];
     char script[PATH_MAX];
-    (void)snprintf(workers, sizeof workers, "%lu", a->workers);
+    (void)snprintf(workers, sizeof workers, "%" PRIu64, a->workers);
     (void)dig_job_folder_file(&s->folder, "run.sh", script);
     const char *const        argv[]  = { "xargs", "-P", workers, "-n", "1", "sh", script, NULL };
     const struct dig_process process = {
@@ -154,8 +155,8 @@ static enum dig_status here(const struct dig_arguments *const a, struct submissi
         return dig_error_set(error, DIG_EIO, "a temporary file: %s", strerror(errno));
     }
     if (s->submits > 0 && !a->quiet) {
-        (void)fprintf(stderr, "digtable: %zu of %zu shards to compute, %lu at a time\n", s->submits,
-                      s->folder.plan.tasks, a->workers);
+        (void)fprintf(stderr, "digtable: %zu of %zu shards to compute, %" PRIu64 " at a time\n",
+                      s->submits, s->folder.plan.tasks, a->workers);
     }
     // By their files it is told which failed.
     enum dig_status status = s->submits > 0 ? compute(a, s, numbers, error) : DIG_OK;

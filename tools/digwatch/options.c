@@ -1,26 +1,26 @@
 #include "tools/digwatch/options.h"
 
-#include "core/help.h"
+#include "core/command_line.h"
 
 #include <assert.h>
 #include <getopt.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-enum { URL = 256, LOG, SPEED, ASCII, PROMETHEUS };
+#define INTO(field) DIG_INTO(struct digwatch_options, field)
 
 static const struct dig_option known[] = {
-    { "lcm-url", URL, "URL", NULL,
-      "the daemon's lcm url (default udpm://239.255.76.67:7667?ttl=0)" },
-    { "log", LOG, "LOG.lcm", NULL, "play a log of lcm-logger instead" },
-    { "speed", SPEED, "X", NULL,
+    { "lcm-url", "URL", NULL, "the daemon's lcm url (default udpm://239.255.76.67:7667?ttl=0)",
+      INTO(url) },
+    { "log", "LOG.lcm", NULL, "play a log of lcm-logger instead", INTO(log) },
+    { "speed", "X", NULL,
       "X times as fast as it was logged, 0.01 to 10000 (default 1); a pause of more than 10 s "
-      "takes 10 s" },
-    { "ascii", ASCII, NULL, NULL,
-      "no braille and no shades, for terminals without UTF-8 (found by itself)" },
-    { "prometheus", PROMETHEUS, "FILE.prom", NULL,
+      "takes 10 s",
+      INTO(speed), 0.01, 1e4 },
+    { "ascii", NULL, NULL,
+      "no braille and no shades, for terminals without UTF-8 (found by itself)", INTO(ascii) },
+    { "prometheus", "FILE.prom", NULL,
       "write health once a second in Prometheus' text format, for node_exporter's textfile "
-      "collector, instead of showing it; SIGTERM ends it" },
+      "collector, instead of showing it; SIGTERM ends it",
+      INTO(prometheus) },
 };
 
 static const struct dig_program program = {
@@ -41,34 +41,21 @@ enum dig_status digwatch_parse(const int argc, char *argv[], struct digwatch_opt
                                struct dig_error *const error)
 {
     assert(argv != NULL && options != NULL);
-    struct digwatch_options o     = { .speed = 1.0 };
-    const char             *speed = NULL;
-    for (int c;
-         (c = dig_option_next(&program, &program.self, argc, argv, error)) != DIG_OPTION_END;) {
-        switch (c) {
-        case URL: o.url = optarg; break;
-        case LOG: o.log = optarg; break;
-        case SPEED: speed = optarg; break;
-        case ASCII: o.ascii = true; break;
-        case PROMETHEUS: o.prometheus = optarg; break;
-        case DIG_OPTION_HELP: dig_help_print(&program, &program.self, stdout); exit(EXIT_SUCCESS);
-        case DIG_OPTION_VERSION: (void)puts("digwatch " DIG_VERSION); exit(EXIT_SUCCESS);
-        default: return DIG_EINVAL; // said already
-        }
+    struct digwatch_options o = { .speed = 0.0 };
+    if (dig_options_read(&program, argc, argv, &o, error) == NULL) {
+        return DIG_EINVAL;
     }
     if (optind < argc) {
         return dig_error_set(error, DIG_EINVAL, "%s: expected options alone (a log: --log %s)",
                              argv[optind], argv[optind]);
     }
-    if (speed != NULL && !dig_number_read(speed, 0.01, 1e4, &o.speed)) {
-        return dig_error_set(error, DIG_EINVAL, "--speed %s: expected 0.01 to 10000", speed);
-    }
     if ((o.log != NULL && (o.url != NULL || o.prometheus != NULL)) ||
-        (o.log == NULL && speed != NULL)) {
+        (o.log == NULL && o.speed > 0.0)) {
         return dig_error_set(error, DIG_EINVAL,
                              "expected --speed with --log, and --log without --lcm-url and "
                              "--prometheus");
     }
+    o.speed  = o.speed > 0.0 ? o.speed : 1.0;
     o.url    = o.url != NULL ? o.url : "udpm://239.255.76.67:7667?ttl=0";
     *options = o;
     return DIG_OK;

@@ -1,6 +1,5 @@
 // digrig: a machine to test against. See --help.
 
-#include "core/help.h"
 #include "core/recording.h"
 #include "core/scene.h"
 #include "files/campaign_yaml.h"
@@ -199,13 +198,6 @@ int main(const int argc, char *argv[])
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digrig: %s\nTry digrig --help.\n", error.text);
         return EXIT_USAGE;
-    }
-    if (options.command == DIG_RIG_COMMAND_HELP) {
-        dig_help_print(dig_rig_program(), options.help_of, stdout);
-        return EXIT_DONE;
-    }
-    if (options.command == DIG_RIG_COMMAND_VERSION) {
-        return printf("digrig %s\n", DIG_VERSION) < 0 ? EXIT_FAILED : EXIT_DONE;
     }
     return work(&options);
 }

@@ -3,7 +3,6 @@
 #ifndef DIG_TOOLS_RIG_OPTIONS_H
 #define DIG_TOOLS_RIG_OPTIONS_H
 
-#include "core/command_line.h"
 #include "core/error.h"
 #include "tools/rig/bus/fault.h"
 #include "tools/rig/motion/track.h"
@@ -14,18 +13,11 @@
 #define DIG_RIG_INPUTS_MAX 32
 #define DIG_RIG_FAULTS_MAX 16
 
-enum dig_rig_command {
-    DIG_RIG_COMMAND_HELP,
-    DIG_RIG_COMMAND_VERSION,
-    DIG_RIG_COMMAND_RECORD,
-    DIG_RIG_COMMAND_AIR,
-    DIG_RIG_COMMAND_SERVE
-};
+enum dig_rig_command { DIG_RIG_COMMAND_RECORD, DIG_RIG_COMMAND_AIR, DIG_RIG_COMMAND_SERVE };
 
 /// Strings point into argv.
 struct dig_rig_options {
     enum dig_rig_command         command;
-    const struct dig_command    *help_of; // HELP: what it was asked for
     size_t                       inputs;
     const char                  *input[DIG_RIG_INPUTS_MAX]; // recordings, or one campaign folder
     const char                  *machine;
@@ -52,9 +44,8 @@ struct dig_rig_options {
     struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
 };
 
-const struct dig_program *dig_rig_program(void);
-
-/// DIG_EINVAL says which option and what was expected.
+/// Prints help or version and exits where asked to. DIG_EINVAL says which option and what was
+/// expected.
 DIG_MUST_CHECK enum dig_status dig_rig_options_parse(int argc, char *argv[],
                                                      struct dig_rig_options *options,
                                                      struct dig_error       *error);
