@@ -6,6 +6,9 @@
 #include "tools/digwatch/prometheus.h"
 #include "tools/digwatch/screen.h"
 
+#include <locale.h>
+#include <wchar.h>
+
 static char waiting_state[] = "waiting for bus";
 
 static struct digwatch_model model;
@@ -20,7 +23,8 @@ static int fresh(void **state)
 
 static const struct digwatch_view plain = { .source = "day.lcm", .damage = "" };
 
-// The screen of these sizes; valid until the next call.
+// The screen of these sizes as UTF-8, a line a row, blanks at its end left out; valid until the
+// next call.
 static const char *screen(const int rows, const int columns, const bool ascii,
                           const struct digwatch_view *const view)
 {
@@ -28,7 +32,17 @@ static const char *screen(const int rows, const int columns, const bool ascii,
     digwatch_grid_init(&grid, rows, columns, ascii);
     digwatch_screen(&model, view, &grid);
     FILE *const to = fmemopen(text, sizeof text, "w");
-    digwatch_grid_print(&grid, to);
+    assert_non_null(setlocale(LC_CTYPE, "C.UTF-8"));
+    for (int r = 0; r < grid.rows; r++) {
+        int end = grid.columns;
+        while (end > 0 && grid.cell[r][end - 1].glyph == ' ') {
+            end--;
+        }
+        for (int c = 0; c < end; c++) {
+            (void)fprintf(to, "%lc", (wint_t)grid.cell[r][c].glyph);
+        }
+        (void)fputc('\n', to);
+    }
     (void)fclose(to);
     return text;
 }

@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 static int at_most(const int value, const int most)
@@ -97,31 +98,4 @@ int digwatch_grid_wrap(struct digwatch_grid *const grid, int row, const int colu
         text += next;
     }
     return row;
-}
-
-static void put_utf8(const uint32_t glyph, FILE *const to)
-{
-    if (glyph < 0x80) {
-        (void)fputc((int)glyph, to);
-    } else if (glyph < 0x800) {
-        (void)fprintf(to, "%c%c", (int)(0xc0 | glyph >> 6), (int)(0x80 | (glyph & 0x3f)));
-    } else {
-        (void)fprintf(to, "%c%c%c", (int)(0xe0 | glyph >> 12), (int)(0x80 | (glyph >> 6 & 0x3f)),
-                      (int)(0x80 | (glyph & 0x3f)));
-    }
-}
-
-void digwatch_grid_print(const struct digwatch_grid *const grid, FILE *const to)
-{
-    assert(grid != NULL && to != NULL);
-    for (int r = 0; r < grid->rows; r++) {
-        int end = grid->columns;
-        while (end > 0 && grid->cell[r][end - 1].glyph == ' ') {
-            end--;
-        }
-        for (int c = 0; c < end; c++) {
-            put_utf8(grid->cell[r][c].glyph, to);
-        }
-        (void)fputc('\n', to);
-    }
 }

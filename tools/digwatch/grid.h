@@ -6,7 +6,6 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #define DIGWATCH_ROWS_MAX    100
 #define DIGWATCH_COLUMNS_MAX 320
@@ -50,8 +49,5 @@ __attribute__((format(printf, 5, 6))) int digwatch_grid_put(struct digwatch_grid
 /// The same, broken at blanks into as many rows as it takes, up to `last`; returns the row behind.
 int digwatch_grid_wrap(struct digwatch_grid *grid, int row, int column, int last,
                        enum digwatch_ink ink, const char *text);
-
-/// The grid as UTF-8 text, a line a row, blanks at its end left out.
-void digwatch_grid_print(const struct digwatch_grid *grid, FILE *to);
 
 #endif // DIG_TOOLS_DIGWATCH_GRID_H
