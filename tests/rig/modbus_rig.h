@@ -13,6 +13,7 @@ static const uint16_t registers[DIG_RIG_REGISTERS] = { 1,    5123, 0xCF2C, 0xFFF
                                                        1000, 0,    34300,  1235,   0,      453 };
 
 struct rig {
+    struct dig_rig_faults   faults;
     struct dig_rig_board    board;
     struct dig_rig_modbus  *server;
     struct dig_rig_requests requests;

@@ -4,11 +4,16 @@
 
 #include "tests/testlib.h"
 
+static void add(struct dig_rig_faults *const faults, const char *const text)
+{
+    assert_int_equal(dig_rig_fault_add(text, faults, NULL), DIG_OK);
+}
+
 static struct dig_rig_fault parse(const char *const text)
 {
-    struct dig_rig_fault fault;
-    assert_int_equal(dig_rig_fault_parse(text, &fault, NULL), DIG_OK);
-    return fault;
+    struct dig_rig_faults faults = { .faults = 0 };
+    add(&faults, text);
+    return faults.fault[0];
 }
 
 TEST(every_kind_is_read_with_its_time)
@@ -39,45 +44,63 @@ TEST(nonsense_is_refused_and_writes_nothing)
                                        "drop=1.5@1", "drop=x@1",    "frozen=0.1@1", "drop=0.1",
                                        "frozen@nan", "frozen@inf",  "frozen@1:nan" };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        struct dig_rig_fault fault = { .begin_s = 42.0 };
-        struct dig_error     error = { "" };
-        assert_int_equal(dig_rig_fault_parse(bad[i], &fault, &error), DIG_EINVAL);
-        assert_close(fault.begin_s, 42.0, 0.0);
+        struct dig_rig_faults faults = { .fault = { { .begin_s = 42.0 } } };
+        struct dig_error      error  = { "" };
+        assert_int_equal(dig_rig_fault_add(bad[i], &faults, &error), DIG_EINVAL);
+        assert_int_equal(faults.faults, 0);
+        assert_close(faults.fault[0].begin_s, 42.0, 0.0);
         assert_true(error.text[0] != '\0');
     }
 }
 
 TEST(fault_is_on_from_its_begin_to_just_before_its_end)
 {
-    const struct dig_rig_fault faults[] = { parse("frozen@1:2"), parse("missing@2") };
-    assert_false(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_FROZEN, 0.999));
-    assert_true(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_FROZEN, 1.0));
-    assert_true(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_FROZEN, 2.999));
-    assert_false(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_FROZEN, 3.0));
-    assert_false(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_MISSING, 1.5));
-    assert_true(dig_rig_fault_is_on(2, faults, DIG_RIG_FAULT_MISSING, 1e6));
-    assert_false(dig_rig_fault_is_on(0, faults, DIG_RIG_FAULT_MISSING, 1e6));
+    struct dig_rig_faults faults = { .faults = 0 };
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_MISSING, 1e6), 0.0, 0.0);
+    add(&faults, "frozen@1:2");
+    add(&faults, "missing@2");
+    add(&faults, "drop=0.25@4");
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_FROZEN, 0.999), 0.0, 0.0);
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_FROZEN, 1.0), 1.0, 0.0);
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_FROZEN, 2.999), 1.0, 0.0);
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_FROZEN, 3.0), 0.0, 0.0);
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_MISSING, 1.5), 0.0, 0.0);
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_MISSING, 1e6), 1.0, 0.0);
+    assert_close(dig_rig_fault_amount(&faults, DIG_RIG_FAULT_DROP, 4.0), 0.25, 0.0);
 }
 
 TEST(samples_are_spoiled_only_while_the_fault_lasts)
 {
-    const struct dig_rig_fault faults[] = { parse("nan@1:1"), parse("out-of-range@3:1") };
-    struct dig_sample          good     = { .value = { 0.5, -1.0, -0.5, 5e6 } };
+    struct dig_rig_faults faults = { .faults = 0 };
+    add(&faults, "nan@1:1");
+    add(&faults, "out-of-range@3:1");
+    struct dig_sample good = { .value = { 0.5, -1.0, -0.5, 5e6 } };
     for (int s = 0; s < DIG_SIGNALS; s++) {
         good.valid[s] = true;
     }
     struct dig_sample sample = good;
-    dig_rig_fault_spoil(2, faults, 0.5, &sample);
+    dig_rig_fault_spoil(&faults, 0.5, &sample);
     assert_memory_equal(&sample, &good, sizeof good);
 
-    dig_rig_fault_spoil(2, faults, 1.5, &sample);
+    dig_rig_fault_spoil(&faults, 1.5, &sample);
     for (int s = 0; s < DIG_SIGNALS; s++) {
         assert_false(sample.valid[s]);
     }
 
     sample = good;
-    dig_rig_fault_spoil(2, faults, 3.5, &sample);
+    dig_rig_fault_spoil(&faults, 3.5, &sample);
     assert_true(dig_sample_is_complete(&sample));
     assert_close(sample.value[DIG_SIGNAL_BOOM_rad], 12.0, 0.0);
     assert_close(sample.value[DIG_SIGNAL_BUCKET_ROD_Pa], 60e6, 0.0);
+}
+
+TEST(there_are_no_more_than_sixteen)
+{
+    struct dig_rig_faults faults = { .faults = 0 };
+    struct dig_error      error  = { "" };
+    for (int i = 0; i < DIG_RIG_FAULTS_MAX; i++) {
+        add(&faults, "frozen@1:2");
+    }
+    assert_int_equal(dig_rig_fault_add("frozen@1:2", &faults, &error), DIG_EINVAL);
+    assert_string_equal(error.text, "--fault: more than 16");
 }

@@ -46,8 +46,8 @@ TEST(examples_of_the_contract_are_understood)
     assert_close(serve.speed, 2.5, 0.0);
     assert_close(serve.start_delay_s, 3.0, 0.0);
     assert_true(serve.loop && serve.json && serve.noise);
-    assert_int_equal(serve.faults, 2);
-    assert_int_equal(serve.fault[1].kind, DIG_RIG_FAULT_MISSING);
+    assert_int_equal(serve.faults.faults, 2);
+    assert_int_equal(serve.faults.fault[1].kind, DIG_RIG_FAULT_MISSING);
 
     const struct dig_rig_options record = good(
         "digrig record a.csv b.csv --machine m.yaml -o out.csv --rate 100 --truth t.csv --exact "

@@ -17,8 +17,8 @@ static void start_tcp(struct rig *const rig)
     char             where[100];
     struct dig_error error = { "" };
     memset(rig, 0, sizeof *rig);
-    assert_true(dig_rig_board_init(&rig->board));
-    dig_rig_board_write(&rig->board, registers, false);
+    assert_true(dig_rig_board_init(&rig->board, &rig->faults));
+    dig_rig_board_write(&rig->board, registers, 0.0);
     if (dig_rig_modbus_start_tcp("127.0.0.1:0", &rig->board, sizeof where, where, &rig->server,
                                  &error) != DIG_OK) {
         fail_msg("%s", error.text);
@@ -51,7 +51,7 @@ TEST(input_and_holding_registers_read_the_same_board)
     uint16_t newer[DIG_RIG_REGISTERS];
     memcpy(newer, registers, sizeof newer);
     newer[5] = 777;
-    dig_rig_board_write(&rig.board, newer, false);
+    dig_rig_board_write(&rig.board, newer, 0.0);
     assert_int_equal(modbus_read_input_registers(client, 5, 1, found), 1);
     assert_int_equal(found[0], 777);
 
@@ -154,10 +154,11 @@ TEST(silent_board_answers_nothing_and_speaks_again_later)
     modbus_t *const client = join(&rig);
     uint16_t        found[12];
     modbus_set_response_timeout(client, 0, 100000);
-    dig_rig_board_write(&rig.board, registers, true);
+    assert_int_equal(dig_rig_fault_add("missing@1:1", &rig.faults, NULL), DIG_OK);
+    dig_rig_board_write(&rig.board, registers, 1.0);
     assert_int_equal(modbus_read_registers(client, 0, 12, found), -1);
     assert_int_equal(errno, ETIMEDOUT);
-    dig_rig_board_write(&rig.board, registers, false);
+    dig_rig_board_write(&rig.board, registers, 2.0);
     modbus_set_response_timeout(client, 2, 0);
     assert_int_equal(modbus_read_registers(client, 0, 12, found), 12);
     leave(client);
@@ -171,13 +172,14 @@ TEST(damaged_answers_are_refused_by_the_client_and_counted)
     uint16_t   read[12];
     start_tcp(&rig);
     modbus_t *const client = join(&rig);
-    dig_rig_board_behave(&rig.board, &(struct dig_rig_manner){ .corrupt = 1.0 });
+    assert_int_equal(dig_rig_fault_add("corrupt=1@1:1", &rig.faults, NULL), DIG_OK);
+    dig_rig_board_write(&rig.board, registers, 1.0);
     for (int i = 0; i < 9; i++) {
         assert_int_equal(modbus_read_input_registers(client, 0, 12, read), -1);
         assert_int_equal(errno, EMBBADDATA);
         (void)modbus_flush(client);
     }
-    dig_rig_board_behave(&rig.board, &(struct dig_rig_manner){ .corrupt = 0.0 });
+    dig_rig_board_write(&rig.board, registers, 2.0);
     assert_int_equal(modbus_read_input_registers(client, 0, 12, read), 12);
     assert_memory_equal(read, registers, sizeof read);
     leave(client);
@@ -228,12 +230,12 @@ static void *read_board(void *const board)
 TEST(request_before_the_first_values_is_answered_with_them)
 {
     struct dig_rig_board board;
-    assert_true(dig_rig_board_init(&board));
+    assert_true(dig_rig_board_init(&board, NULL));
     pthread_t reader;
     assert_int_equal(pthread_create(&reader, NULL, read_board, &board), 0);
     const struct timespec moment = { .tv_nsec = 20000000 };
     (void)nanosleep(&moment, NULL);
-    dig_rig_board_write(&board, registers, false);
+    dig_rig_board_write(&board, registers, 0.0);
     void *found = NULL;
     assert_int_equal(pthread_join(reader, &found), 0);
     assert_memory_equal(found, registers, sizeof registers);

@@ -99,8 +99,8 @@ TEST(slave_1_on_a_serial_line_serves_reads_and_refuses_writes)
     char             address[100];
     struct dig_error error = { "" };
     memset(&rig, 0, sizeof rig);
-    assert_true(dig_rig_board_init(&rig.board));
-    dig_rig_board_write(&rig.board, registers, false);
+    assert_true(dig_rig_board_init(&rig.board, &rig.faults));
+    dig_rig_board_write(&rig.board, registers, 0.0);
     (void)snprintf(address, sizeof address, "%s:57600", cable.name[0]);
     if (dig_rig_modbus_start_rtu(address, &rig.board, sizeof where, where, &rig.server, &error) !=
         DIG_OK) {

@@ -27,15 +27,15 @@ static unsigned number_of(const struct dig_rig_can_frame *const frame)
 // A frame each 10 ms, numbered, through one fault.
 static struct dig_rig_wire play(struct sink *const sink, const char *const text)
 {
-    struct dig_rig_wire  wire = { .random = 7 };
-    struct dig_rig_fault fault;
-    assert_int_equal(dig_rig_fault_parse(text, &fault, NULL), DIG_OK);
+    struct dig_rig_wire   wire   = { .random = 7 };
+    struct dig_rig_faults faults = { .faults = 0 };
+    assert_int_equal(dig_rig_fault_add(text, &faults, NULL), DIG_OK);
     *sink = (struct sink){ 0 };
     for (unsigned i = 0; i < FRAMES; i++) {
         const struct dig_rig_can_frame frame = { .id   = 1,
                                                  .data = { (uint8_t)i, (uint8_t)(i >> 8) } };
         sink->now_s                          = 0.01 * i;
-        dig_rig_wire_put(&wire, 1, &fault, sink->now_s, &frame, take, sink);
+        dig_rig_wire_put(&wire, &faults, sink->now_s, &frame, take, sink);
     }
     return wire;
 }

@@ -11,10 +11,8 @@ enum dig_status dig_rig_buses_open(const struct dig_rig_options *const options,
 {
     *buses = (struct dig_rig_buses){ .can    = -1,
                                      .sealed = options->can_sealed,
-                                     .wire   = { .random = options->seed },
-                                     .faults = options->faults,
-                                     .fault  = options->fault };
-    if (!dig_rig_board_init(&buses->board)) {
+                                     .wire   = { .random = options->seed } };
+    if (!dig_rig_board_init(&buses->board, &options->faults)) {
         return dig_error_set(error, DIG_ENOMEM, "no mutex");
     }
     char            where[300];
@@ -58,8 +56,8 @@ static void send(void *const context, const struct dig_rig_can_frame *const fram
 static void put_frame(struct dig_rig_buses *const buses, const int64_t tick,
                       const struct dig_rig_can_frame frame)
 {
-    dig_rig_wire_put(&buses->wire, buses->faults, buses->fault, (double)tick / DIG_RIG_TICK_Hz,
-                     &frame, send, buses);
+    dig_rig_wire_put(&buses->wire, buses->board.faults, (double)tick / DIG_RIG_TICK_Hz, &frame,
+                     send, buses);
 }
 
 // Each frame at the period its layout gives it, in ticks of 5 ms.
@@ -86,30 +84,16 @@ static void send_frames(struct dig_rig_buses *const buses, const int64_t tick,
     }
 }
 
-// How the Modbus servers behave at time_s.
-static struct dig_rig_manner manner_at(const struct dig_rig_buses *const buses, const double time_s)
-{
-    const size_t n = buses->faults;
-    return (struct dig_rig_manner){
-        .drop       = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_DROP, time_s),
-        .exception  = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_EXCEPTION, time_s),
-        .corrupt    = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_CORRUPT, time_s),
-        .slow_s     = dig_rig_fault_amount(n, buses->fault, DIG_RIG_FAULT_SLOW, time_s),
-        .far        = dig_rig_fault_is_on(n, buses->fault, DIG_RIG_FAULT_FAR, time_s),
-        .far_silent = dig_rig_fault_is_on(n, buses->fault, DIG_RIG_FAULT_FAR_SILENT, time_s),
-    };
-}
-
 void dig_rig_buses_send(struct dig_rig_buses *const buses, const int64_t tick,
-                        const struct dig_sample *const sample, const bool moving, const bool silent)
+                        const struct dig_sample *const sample, const bool moving)
 {
-    uint16_t registers[DIG_RIG_REGISTERS];
+    const double time_s = (double)tick / DIG_RIG_TICK_Hz;
+    uint16_t     registers[DIG_RIG_REGISTERS];
     buses->modbus_alive = (uint16_t)(buses->modbus_alive + (moving ? 1U : 0U));
     dig_rig_modbus_encode(sample, buses->modbus_alive, registers);
-    dig_rig_board_write(&buses->board, registers, silent);
-    const struct dig_rig_manner manner = manner_at(buses, (double)tick / DIG_RIG_TICK_Hz);
-    dig_rig_board_behave(&buses->board, &manner);
-    if (buses->can >= 0 && !silent) {
+    dig_rig_board_write(&buses->board, registers, time_s);
+    if (buses->can >= 0 &&
+        !(dig_rig_fault_amount(buses->board.faults, DIG_RIG_FAULT_MISSING, time_s) > 0.0)) {
         send_frames(buses, tick, sample, moving);
     }
 }

@@ -17,28 +17,26 @@
     200 // of machine time: the Modbus map's rate; CAN frames go every second tick
 
 struct dig_rig_buses {
-    int                         can; // -1: none
-    uint64_t                    frames_sent, frames_lost;
-    uint8_t                     can_alive, can_counter;
-    bool                        sealed; // frames carry a counter and a checksum
-    struct dig_rig_wire         wire;
-    size_t                      faults;
-    const struct dig_rig_fault *fault; // of the options, which outlive this
-    uint16_t                    modbus_alive;
-    struct dig_rig_board        board;
-    struct dig_rig_modbus      *tcp, *rtu; // NULL: none
-    struct dig_rig_requests     requests;  // filled by the close
+    int                     can; // -1: none
+    uint64_t                frames_sent, frames_lost;
+    uint8_t                 can_alive, can_counter;
+    bool                    sealed; // frames carry a counter and a checksum
+    struct dig_rig_wire     wire;
+    uint16_t                modbus_alive;
+    struct dig_rig_board    board;
+    struct dig_rig_modbus  *tcp, *rtu; // NULL: none
+    struct dig_rig_requests requests;  // filled by the close
 };
 
-/// Opens what the options ask for and says so on stderr. Nothing stays open on failure.
+/// Opens what the options ask for and says so on stderr; the options must outlive the buses.
+/// Nothing stays open on failure.
 DIG_MUST_CHECK enum dig_status dig_rig_buses_open(const struct dig_rig_options *options,
                                                   struct dig_rig_buses         *buses,
                                                   struct dig_error             *error);
 
-/// Tells one sample at tick number `tick`. moving false: the alive counters stand. silent: no
-/// frame, no answer.
+/// Tells one sample at tick number `tick`. moving false: the alive counters stand.
 void dig_rig_buses_send(struct dig_rig_buses *buses, int64_t tick, const struct dig_sample *sample,
-                        bool moving, bool silent);
+                        bool moving);
 
 /// Ends the servers and closes everything.
 void dig_rig_buses_close(struct dig_rig_buses *buses);

@@ -73,11 +73,7 @@ static enum dig_status take_exact(const char *const none, void *const into,
 static enum dig_status take_fault(const char *const text, void *const into,
                                   struct dig_error *const error)
 {
-    struct dig_rig_options *const options = into;
-    if (options->faults == DIG_RIG_FAULTS_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "--fault: more than %d", DIG_RIG_FAULTS_MAX);
-    }
-    return dig_rig_fault_parse(text, &options->fault[options->faults++], error);
+    return dig_rig_fault_add(text, &((struct dig_rig_options *)into)->faults, error);
 }
 
 static const struct dig_option known[] = {

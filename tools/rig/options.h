@@ -11,7 +11,6 @@
 #include <stdint.h>
 
 #define DIG_RIG_INPUTS_MAX 32
-#define DIG_RIG_FAULTS_MAX 16
 
 enum dig_rig_command { DIG_RIG_COMMAND_RECORD, DIG_RIG_COMMAND_AIR, DIG_RIG_COMMAND_SERVE };
 
@@ -32,16 +31,15 @@ struct dig_rig_options {
     const char *out;
     const char *truth; // NULL: none
     // serve; NULL: not on that bus
-    const char          *can;
-    bool                 can_sealed; // frames carry a counter and a checksum
-    const char          *tcp;        // HOST:PORT
-    const char          *rtu;        // DEVICE[:BAUD]
-    double               speed;
-    bool                 loop;
-    bool                 json;
-    double               start_delay_s;
-    size_t               faults;
-    struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
+    const char           *can;
+    bool                  can_sealed; // frames carry a counter and a checksum
+    const char           *tcp;        // HOST:PORT
+    const char           *rtu;        // DEVICE[:BAUD]
+    double                speed;
+    bool                  loop;
+    bool                  json;
+    double                start_delay_s;
+    struct dig_rig_faults faults;
 };
 
 /// Prints help or version and exits where asked to. DIG_EINVAL says which option and what was

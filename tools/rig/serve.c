@@ -118,19 +118,16 @@ static void play(struct player *const player, struct dig_rig_buses *const buses,
     const struct dig_rig_options *const options = player->options;
     const int64_t                       rows    = (int64_t)player->track->rows;
     const int64_t                       row     = tick < 0 ? 0 : tick % rows;
-    const double                        time_s  = (double)tick * tick_s;
-    const bool                          frozen =
-        dig_rig_fault_is_on(options->faults, options->fault, DIG_RIG_FAULT_FROZEN, time_s);
-    const bool silent =
-        dig_rig_fault_is_on(options->faults, options->fault, DIG_RIG_FAULT_MISSING, time_s);
+    const double                        time_s  = (double)tick / DIG_RIG_TICK_Hz;
+    const bool frozen = dig_rig_fault_amount(&options->faults, DIG_RIG_FAULT_FROZEN, time_s) > 0.0;
     if (!frozen) {
         const struct dig_sample before = player->last;
         player->last                   = dig_rig_sense(player->machine, &player->track->row[row],
                                                        llround(1e9 * time_s), options->noise ? &player->noise : NULL);
-        dig_rig_fault_spoil(options->faults, options->fault, time_s, &player->last);
-        dig_rig_fault_hold(options->faults, options->fault, time_s, &before, &player->last);
+        dig_rig_fault_spoil(&options->faults, time_s, &player->last);
+        dig_rig_fault_hold(&options->faults, time_s, &before, &player->last);
     }
-    dig_rig_buses_send(buses, tick, &player->last, !frozen, silent);
+    dig_rig_buses_send(buses, tick, &player->last, !frozen);
 }
 
 enum dig_status dig_rig_serve(const struct dig_machine *const     machine,

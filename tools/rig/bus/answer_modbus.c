@@ -32,26 +32,36 @@ static bool damage(const struct dig_rig_modbus *const server, const uint8_t requ
     return true;
 }
 
-// What a fault makes of a request: true when it is not to be answered as it should.
-static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[], const bool far)
+// True for the share of requests that the fault of that kind strikes at time_s.
+static bool strikes(struct dig_rig_modbus *const server, const enum dig_rig_fault_kind kind,
+                    const double time_s)
 {
-    const struct dig_rig_manner manner = dig_rig_board_manner(server->board);
-    if (manner.slow_s > 0.0) {
-        (void)poll(NULL, 0, (int)(1e3 * manner.slow_s));
+    const double share = dig_rig_fault_amount(server->board->faults, kind, time_s);
+    return share > 0.0 && dig_rig_wire_random(&server->random) < share;
+}
+
+// What a fault makes of a request: true when it is not to be answered as it should.
+static bool misbehave(struct dig_rig_modbus *const server, const uint8_t request[], const bool far,
+                      const double time_s)
+{
+    const struct dig_rig_faults *const faults = server->board->faults;
+    const double slow_s = dig_rig_fault_amount(faults, DIG_RIG_FAULT_SLOW, time_s);
+    if (slow_s > 0.0) {
+        (void)poll(NULL, 0, (int)(1e3 * slow_s));
     }
-    if ((manner.far_silent && far) ||
-        (manner.drop > 0.0 && dig_rig_wire_random(&server->random) < manner.drop)) {
+    if ((far && dig_rig_fault_amount(faults, DIG_RIG_FAULT_FAR_SILENT, time_s) > 0.0) ||
+        strikes(server, DIG_RIG_FAULT_DROP, time_s)) {
         server->requests.unanswered++;
         return true;
     }
-    if ((manner.far && far) ||
-        (manner.exception > 0.0 && dig_rig_wire_random(&server->random) < manner.exception)) {
+    if ((far && dig_rig_fault_amount(faults, DIG_RIG_FAULT_FAR, time_s) > 0.0) ||
+        strikes(server, DIG_RIG_FAULT_EXCEPTION, time_s)) {
         server->requests.excepted++;
         (void)modbus_reply_exception(server->context, request,
                                      MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
         return true;
     }
-    if (manner.corrupt > 0.0 && dig_rig_wire_random(&server->random) < manner.corrupt) {
+    if (strikes(server, DIG_RIG_FAULT_CORRUPT, time_s)) {
         server->requests.damaged++;
         return damage(server, request);
     }
@@ -80,11 +90,12 @@ bool dig_rig_modbus_answer(struct dig_rig_modbus *const server, const uint8_t re
         function == MODBUS_FC_READ_HOLDING_REGISTERS || function == MODBUS_FC_READ_INPUT_REGISTERS;
     const int asked = reads ? request[header + 1] << 8 | request[header + 2] : 0;
 
-    if (dig_rig_board_read(server->board, server->map->tab_registers)) {
+    const double time_s = dig_rig_board_read(server->board, server->map->tab_registers);
+    if (dig_rig_fault_amount(server->board->faults, DIG_RIG_FAULT_MISSING, time_s) > 0.0) {
         server->requests.unanswered++;
         return true;
     }
-    if (misbehave(server, request, asked >= DIG_RIG_FAR)) {
+    if (misbehave(server, request, asked >= DIG_RIG_FAR, time_s)) {
         return true;
     }
     if (!reads) {

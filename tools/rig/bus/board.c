@@ -2,9 +2,11 @@
 
 #include <string.h>
 
-bool dig_rig_board_init(struct dig_rig_board *const board)
+bool dig_rig_board_init(struct dig_rig_board *const        board,
+                        const struct dig_rig_faults *const faults)
 {
     memset(board, 0, sizeof *board);
+    board->faults = faults;
     if (pthread_mutex_init(&board->lock, NULL) != 0) {
         return false;
     }
@@ -22,42 +24,26 @@ void dig_rig_board_finish(struct dig_rig_board *const board)
 }
 
 void dig_rig_board_write(struct dig_rig_board *const board,
-                         const uint16_t registers[DIG_RIG_REGISTERS], const bool silent)
+                         const uint16_t registers[DIG_RIG_REGISTERS], const double time_s)
 {
     (void)pthread_mutex_lock(&board->lock);
     memcpy(board->registers, registers, sizeof board->registers);
-    board->silent  = silent;
+    board->time_s  = time_s;
     board->written = true;
     (void)pthread_cond_broadcast(&board->begun);
     (void)pthread_mutex_unlock(&board->lock);
 }
 
-bool dig_rig_board_read(struct dig_rig_board *const board, uint16_t registers[DIG_RIG_REGISTERS])
+double dig_rig_board_read(struct dig_rig_board *const board, uint16_t registers[DIG_RIG_REGISTERS])
 {
     (void)pthread_mutex_lock(&board->lock);
     while (!board->written && !board->stop) {
         (void)pthread_cond_wait(&board->begun, &board->lock);
     }
     memcpy(registers, board->registers, sizeof board->registers);
-    const bool silent = board->silent;
+    const double time_s = board->time_s;
     (void)pthread_mutex_unlock(&board->lock);
-    return silent;
-}
-
-void dig_rig_board_behave(struct dig_rig_board *const        board,
-                          const struct dig_rig_manner *const manner)
-{
-    (void)pthread_mutex_lock(&board->lock);
-    board->manner = *manner;
-    (void)pthread_mutex_unlock(&board->lock);
-}
-
-struct dig_rig_manner dig_rig_board_manner(struct dig_rig_board *const board)
-{
-    (void)pthread_mutex_lock(&board->lock);
-    const struct dig_rig_manner manner = board->manner;
-    (void)pthread_mutex_unlock(&board->lock);
-    return manner;
+    return time_s;
 }
 
 void dig_rig_board_stop(struct dig_rig_board *const board)

@@ -51,22 +51,25 @@ static bool read_time(const char *const text, double *const begin_s, double *con
     return ok && *end == '\0';
 }
 
-enum dig_status dig_rig_fault_parse(const char *const text, struct dig_rig_fault *const fault,
-                                    struct dig_error *const error)
+enum dig_status dig_rig_fault_add(const char *const text, struct dig_rig_faults *const faults,
+                                  struct dig_error *const error)
 {
+    if (faults->faults == DIG_RIG_FAULTS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "--fault: more than %d", DIG_RIG_FAULTS_MAX);
+    }
     const size_t length = strcspn(text, "=@");
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         if (strlen(kinds[i].name) != length || strncmp(text, kinds[i].name, length) != 0) {
             continue;
         }
-        struct dig_rig_fault read = { .kind = kinds[i].kind };
+        struct dig_rig_fault read = { .kind = kinds[i].kind, .amount = 1.0 };
         const char          *at   = text + length;
         if ((*at == '=') != (kinds[i].most > 0.0)) {
             break;
         }
         at = *at == '=' ? read_number(at + 1, kinds[i].most, &read.amount) : at;
         if (at != NULL && read_time(at, &read.begin_s, &read.end_s)) {
-            *fault = read;
+            faults->fault[faults->faults++] = read;
             return DIG_OK;
         }
     }
@@ -79,39 +82,26 @@ enum dig_status dig_rig_fault_parse(const char *const text, struct dig_rig_fault
         text);
 }
 
-// The fault of that kind that is on; NULL: none is.
-static const struct dig_rig_fault *find(const size_t faults, const struct dig_rig_fault fault[],
-                                        const enum dig_rig_fault_kind kind, const double time_s)
-{
-    for (size_t i = 0; i < faults; i++) {
-        if (fault[i].kind == kind && time_s >= fault[i].begin_s && time_s < fault[i].end_s) {
-            return &fault[i];
-        }
-    }
-    return NULL;
-}
-
-bool dig_rig_fault_is_on(const size_t faults, const struct dig_rig_fault fault[],
-                         const enum dig_rig_fault_kind kind, const double time_s)
-{
-    return find(faults, fault, kind, time_s) != NULL;
-}
-
-double dig_rig_fault_amount(const size_t faults, const struct dig_rig_fault fault[],
+double dig_rig_fault_amount(const struct dig_rig_faults *const faults,
                             const enum dig_rig_fault_kind kind, const double time_s)
 {
-    const struct dig_rig_fault *const on = find(faults, fault, kind, time_s);
-    return on != NULL ? on->amount : 0.0;
+    for (size_t i = 0; i < faults->faults; i++) {
+        const struct dig_rig_fault *const f = &faults->fault[i];
+        if (f->kind == kind && time_s >= f->begin_s && time_s < f->end_s) {
+            return f->amount;
+        }
+    }
+    return 0.0;
 }
 
-void dig_rig_fault_spoil(const size_t faults, const struct dig_rig_fault fault[],
-                         const double time_s, struct dig_sample *const sample)
+void dig_rig_fault_spoil(const struct dig_rig_faults *const faults, const double time_s,
+                         struct dig_sample *const sample)
 {
     static const double far_Pa     = 60e6;
     static const double far_rad    = 12.0;
     static const double far_of_rig = 1e6; // m, N, Nm
 
-    if (dig_rig_fault_is_on(faults, fault, DIG_RIG_FAULT_OUT_OF_RANGE, time_s)) {
+    if (dig_rig_fault_amount(faults, DIG_RIG_FAULT_OUT_OF_RANGE, time_s) > 0.0) {
         for (int s = DIG_SIGNAL_BOOM_rad; s <= DIG_SIGNAL_BUCKET_ROD_Pa; s++) {
             sample->value[s] = s < DIG_SIGNAL_BOOM_HEAD_Pa ? far_rad : far_Pa;
         }
@@ -119,7 +109,7 @@ void dig_rig_fault_spoil(const size_t faults, const struct dig_rig_fault fault[]
             sample->value[s] = far_of_rig;
         }
     }
-    if (dig_rig_fault_is_on(faults, fault, DIG_RIG_FAULT_NOT_AVAILABLE, time_s)) {
+    if (dig_rig_fault_amount(faults, DIG_RIG_FAULT_NOT_AVAILABLE, time_s) > 0.0) {
         for (int s = 0; s < DIG_SIGNALS; s++) {
             sample->valid[s] = false;
             sample->value[s] = 0.0;
@@ -127,15 +117,14 @@ void dig_rig_fault_spoil(const size_t faults, const struct dig_rig_fault fault[]
     }
 }
 
-void dig_rig_fault_hold(const size_t faults, const struct dig_rig_fault fault[],
-                        const double time_s, const struct dig_sample *const before,
-                        struct dig_sample *const sample)
+void dig_rig_fault_hold(const struct dig_rig_faults *const faults, const double time_s,
+                        const struct dig_sample *const before, struct dig_sample *const sample)
 {
     for (int s = DIG_SIGNAL_BOOM_rad; s <= DIG_SIGNAL_BUCKET_ROD_Pa; s++) {
         const enum dig_rig_fault_kind kind = s < DIG_SIGNAL_BOOM_HEAD_Pa
                                                  ? DIG_RIG_FAULT_STUCK_ANGLES
                                                  : DIG_RIG_FAULT_STUCK_PRESSURES;
-        if (dig_rig_fault_is_on(faults, fault, kind, time_s)) {
+        if (dig_rig_fault_amount(faults, kind, time_s) > 0.0) {
             sample->value[s] = before->value[s];
             sample->valid[s] = before->valid[s];
         }

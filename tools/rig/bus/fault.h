@@ -25,7 +25,6 @@
 #include "core/error.h"
 #include "core/sample.h"
 
-#include <stdbool.h>
 #include <stddef.h>
 
 enum dig_rig_fault_kind {
@@ -49,27 +48,31 @@ enum dig_rig_fault_kind {
 struct dig_rig_fault {
     enum dig_rig_fault_kind kind;
     double begin_s, end_s; // machine time since the motion began; end INFINITY: never
-    double amount;         // a share, or seconds; 0 for kinds that have none
+    double amount;         // a share, or seconds; 1 for kinds that have none
 };
 
-/// Parses KIND[=AMOUNT]@T[:DURATION] as above. DIG_EINVAL says what was expected.
-DIG_MUST_CHECK enum dig_status dig_rig_fault_parse(const char *text, struct dig_rig_fault *fault,
-                                                   struct dig_error *error);
+#define DIG_RIG_FAULTS_MAX 16
 
-/// True when a fault of that kind is on at time_s. A loop counts time on.
-bool dig_rig_fault_is_on(size_t faults, const struct dig_rig_fault fault[],
-                         enum dig_rig_fault_kind kind, double time_s);
+/// Zeroed: none.
+struct dig_rig_faults {
+    size_t               faults;
+    struct dig_rig_fault fault[DIG_RIG_FAULTS_MAX];
+};
 
-/// The amount of the fault of that kind that is on at time_s; 0: none is.
-double dig_rig_fault_amount(size_t faults, const struct dig_rig_fault fault[],
-                            enum dig_rig_fault_kind kind, double time_s);
+/// Adds KIND[=AMOUNT]@T[:DURATION] as above. DIG_EINVAL says what was expected.
+DIG_MUST_CHECK enum dig_status dig_rig_fault_add(const char *text, struct dig_rig_faults *faults,
+                                                 struct dig_error *error);
+
+/// The amount of the fault of that kind that is on at time_s; 0: none is. A loop counts time on.
+double dig_rig_fault_amount(const struct dig_rig_faults *faults, enum dig_rig_fault_kind kind,
+                            double time_s);
 
 /// Makes every signal of the sample not available, or out of range, as the faults at time_s say.
-void dig_rig_fault_spoil(size_t faults, const struct dig_rig_fault fault[], double time_s,
+void dig_rig_fault_spoil(const struct dig_rig_faults *faults, double time_s,
                          struct dig_sample *sample);
 
 /// Makes what is stuck at time_s stand as it stood before.
-void dig_rig_fault_hold(size_t faults, const struct dig_rig_fault fault[], double time_s,
+void dig_rig_fault_hold(const struct dig_rig_faults *faults, double time_s,
                         const struct dig_sample *before, struct dig_sample *sample);
 
 #endif // DIG_TOOLS_RIG_BUS_FAULT_H

@@ -57,19 +57,18 @@ static bool is_overtaken(struct dig_rig_wire *const wire, const double share,
     return false;
 }
 
-void dig_rig_wire_put(struct dig_rig_wire *const wire, const size_t faults,
-                      const struct dig_rig_fault fault[], const double time_s,
-                      const struct dig_rig_can_frame *const frame,
+void dig_rig_wire_put(struct dig_rig_wire *const wire, const struct dig_rig_faults *const faults,
+                      const double time_s, const struct dig_rig_can_frame *const frame,
                       void (*const send)(void *context, const struct dig_rig_can_frame *frame),
                       void *const context)
 {
     assert(wire != NULL && frame != NULL && send != NULL);
-    const struct sink sink  = { send, context };
-    const double      drop  = dig_rig_fault_amount(faults, fault, DIG_RIG_FAULT_DROP, time_s);
-    const double      twice = dig_rig_fault_amount(faults, fault, DIG_RIG_FAULT_DUPLICATE, time_s);
-    const double      corrupt = dig_rig_fault_amount(faults, fault, DIG_RIG_FAULT_CORRUPT, time_s);
-    const double      delay_s = dig_rig_fault_amount(faults, fault, DIG_RIG_FAULT_DELAY, time_s);
-    const double      reorder = dig_rig_fault_amount(faults, fault, DIG_RIG_FAULT_REORDER, time_s);
+    const struct sink sink    = { send, context };
+    const double      drop    = dig_rig_fault_amount(faults, DIG_RIG_FAULT_DROP, time_s);
+    const double      twice   = dig_rig_fault_amount(faults, DIG_RIG_FAULT_DUPLICATE, time_s);
+    const double      corrupt = dig_rig_fault_amount(faults, DIG_RIG_FAULT_CORRUPT, time_s);
+    const double      delay_s = dig_rig_fault_amount(faults, DIG_RIG_FAULT_DELAY, time_s);
+    const double      reorder = dig_rig_fault_amount(faults, DIG_RIG_FAULT_REORDER, time_s);
 
     struct dig_rig_can_frame out = *frame;
     if (drop > 0.0 && dig_rig_wire_random(&wire->random) < drop) {

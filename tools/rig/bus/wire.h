@@ -24,8 +24,8 @@ struct dig_rig_wire {
 };
 
 /// Takes a frame at time_s; hands on to send(context, frame) what the faults let through.
-void dig_rig_wire_put(struct dig_rig_wire *wire, size_t faults, const struct dig_rig_fault fault[],
-                      double time_s, const struct dig_rig_can_frame *frame,
+void dig_rig_wire_put(struct dig_rig_wire *wire, const struct dig_rig_faults *faults, double time_s,
+                      const struct dig_rig_can_frame *frame,
                       void (*send)(void *context, const struct dig_rig_can_frame *frame),
                       void *context);
 
