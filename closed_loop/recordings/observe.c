@@ -2,7 +2,7 @@
 
 #include "closed_loop/recordings/alignment.h"
 #include "closed_loop/recordings/path_depth.h"
-#include "core/approach_set.h"
+#include "core/entry_set.h"
 #include "core/units.h"
 #include "estimator/approach/approach_fit.h"
 #include "estimator/approach/approach_response.h"

@@ -114,7 +114,7 @@ static enum dig_status read_header(struct reader *const r, char *const line)
                                      "%s:%d: column %s: given twice, expected once", r->path,
                                      r->line, r->header[f]);
             }
-            r->at[c]   = f;
+            r->at[c]  = f;
             asked_for = true;
         }
         if (!asked_for) {
