@@ -97,6 +97,26 @@ static double common_payload(const struct dig_machine_search *const s)
     return s->fit.lines.at[dig_lines_first(&s->fit.lines, DIG_EFFECT_PAYLOAD)];
 }
 
+// More effects than one trusts to be there at once share out the form of a cause that has none of
+// theirs; so does a payload that weighs less than nothing.
+static bool is_makeshift(const struct dig_machine_search *const s)
+{
+    int effects = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
+    }
+    return effects > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
+}
+
+// Whether what is left of the rows is more than their noise.
+static bool is_unclear(const struct dig_machine_search *const s)
+{
+    const double rows  = (double)s->air.rows;
+    const double means = (double)(DIG_JOINTS * s->air.segments);
+    return s->rest2 > s->noise2 * DIG_MACHINE_UNCLEAR_REST2 * rows || is_makeshift(s) ||
+           s->slow > s->noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
+}
+
 // A first dig that carried more than the others looks like a bucket that is heavier and carries
 // less than nothing.
 static void take_weight_for_payload(struct dig_machine_search *const s)
@@ -114,15 +134,12 @@ static void take_weight_for_payload(struct dig_machine_search *const s)
     refine(s);
 }
 
-// Effects join until none earns its place.
-static void select_effects(struct dig_machine_search *const s)
+// Effects join until none earns its place, `first` before all others.
+static void join(struct dig_machine_search *const s, const unsigned first)
 {
-    static const unsigned rubs = 1U << DIG_EFFECT_CYLINDER_FRICTION;
-    begin(s);
-    rest_by_dig(s);
-    s->rest2_none = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    s->rest2      = s->rest2_none;
-    for (int round = 0; round < ROUNDS; round++) {
+    s->set = first;
+    for (int round = 1; s->set != 0 && round < ROUNDS; round++) {
+        refine(s);
         // Where the first steps have led, others may do better, and some may not be needed.
         const unsigned before = s->set;
         const unsigned anew   = dig_fit_select(&s->fit, s->least, 0);
@@ -130,14 +147,37 @@ static void select_effects(struct dig_machine_search *const s)
         s->set = dig_fit_evidence(&s->fit, anew) >= dig_fit_evidence(&s->fit, more) - s->least
                      ? anew
                      : more;
-        // What friction explains tells how far to trust rows of drives that stand: it goes first.
-        s->set = round == 0 && (s->set & rubs) != 0 ? rubs : s->set;
         if (s->set == before) {
             break;
         }
-        refine(s);
     }
     take_weight_for_payload(s);
+}
+
+static void begin_again(struct dig_machine_search *const s)
+{
+    memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
+    dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+    dig_fit_sum(&s->fit, NULL, NULL);
+    s->slow  = dig_lines_judge(&s->fit.lines);
+    s->rest2 = s->rest2_none;
+}
+
+static void select_effects(struct dig_machine_search *const s)
+{
+    static const unsigned rubs = 1U << DIG_EFFECT_CYLINDER_FRICTION;
+    begin(s);
+    rest_by_dig(s);
+    s->rest2_none        = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
+    s->rest2             = s->rest2_none;
+    const unsigned first = dig_fit_select(&s->fit, s->least, 0);
+    // What friction explains tells how far to trust rows of drives that stand: it goes first. But
+    // alone it may take a strong effect for its own, and then stays there.
+    join(s, (first & rubs) != 0 ? rubs : first);
+    if ((first & rubs) != 0 && first != rubs && is_unclear(s)) {
+        begin_again(s);
+        join(s, first);
+    }
 }
 
 // How often each effect is chosen when the digs are drawn anew.
@@ -157,17 +197,6 @@ static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
         }
     }
     dig_fit_sum(&s->fit, NULL, NULL);
-}
-
-// More effects than one trusts to be there at once share out the form of a cause that has none of
-// theirs; so does a payload that weighs less than nothing.
-static bool is_makeshift(const struct dig_machine_search *const s)
-{
-    int effects = 0;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
-    }
-    return effects > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
 }
 
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
@@ -197,16 +226,12 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
     } else if (status == DIG_OK) {
         select_effects(&s);
         doubt_names(&s);
-        const double rows    = (double)s.air.rows;
-        const double means   = (double)(DIG_JOINTS * s.air.segments);
-        const bool   unclear = s.rest2 > s.noise2 * DIG_MACHINE_UNCLEAR_REST2 * rows ||
-                             is_makeshift(&s) || s.drift.follows != NULL ||
-                             s.slow > s.noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
-        double inclusion[DIG_MACHINE_EFFECTS];
+        const bool unclear = is_unclear(&s) || s.drift.follows != NULL;
+        double     inclusion[DIG_MACHINE_EFFECTS];
 
         *finding =
             (struct dig_machine_finding){ .unexplained = unclear, .follows = s.drift.follows };
-        finding->residual_air = sqrt(s.rest2_none / rows);
+        finding->residual_air = sqrt(s.rest2_none / (double)s.air.rows);
         memcpy(finding->residual_air_of, s.none_of, sizeof s.none_of);
         finding->significant = s.set != 0 || unclear;
         bootstrap(&s, seed, inclusion);

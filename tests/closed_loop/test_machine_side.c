@@ -131,6 +131,25 @@ static bool is_reported(const struct dig_machine_finding *const finding,
     return found;
 }
 
+// Friction takes an offset for its own where it is refined alone.
+TEST(friction_and_a_strong_offset_are_both_named)
+{
+    const struct fault     none  = { .dry_N = 0.0 };
+    const struct fault     both  = { .dry_N = 1000.0, .rod_Pa = 12e5 };
+    struct campaign *const clean = trace(&none, 9);
+    struct campaign *const c     = trace(&both, 31);
+    assert_int_equal(c->finding.effects, 2);
+    assert_true(is_reported(&c->finding, DIG_EFFECT_CYLINDER_FRICTION));
+    assert_true(is_reported(&c->finding, DIG_EFFECT_PRESSURE_OFFSET));
+    const double before = apart(c, clean, false);
+    take_off(c);
+    const double after = apart(c, clean, true);
+    print_message("%.4f of the moment before, %.4f after\n", before, after);
+    assert_true(after < 0.2 * before);
+    end(c);
+    end(clean);
+}
+
 // rms over one dig of what was taken off its moment less what is wrong with it, and of the latter.
 static void taken_off(const struct campaign *const c, const struct campaign *const clean,
                       const size_t d, double *const left, double *const wrong)
