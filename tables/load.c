@@ -122,23 +122,31 @@ enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
                              const struct dig_table_head *const head,
                              struct dig_curve_set **const set, struct dig_error *const error)
 {
-    struct dig_entry_set *plain = NULL;
-    enum dig_status status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    dig_grounds_pool_spread(NULL, plain);
-    const struct dig_table_step step   = dig_grounds_step(plain, head);
-    size_t                      copies = 1;
-    status = dig_grounds_spread_density(head, path, &plain, &copies, error);
-    struct dig_curve_set *const made = calloc(1, sizeof *made);
+    struct dig_curve_set *const made  = calloc(1, sizeof *made);
+    struct dig_entry_set       *plain = NULL;
     if (made == NULL) {
-        status = no_memory(path, error);
-    } else if (status == DIG_OK) {
-        copy_head(made, head);
-        made->step   = step;
-        made->copies = copies;
-        status       = fill(made, plain, path, error);
+        return no_memory(path, error);
+    }
+    copy_head(made, head);
+    enum dig_status status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
+    if (status == DIG_OK) {
+        status = dig_grounds_load(db, path, head, DIG_GROUNDS_APPROACHED, &made->approaches, error);
+    }
+    if (status == DIG_OK) {
+        dig_grounds_pool_spread(NULL, plain);
+        dig_grounds_pool_spread(plain, made->approaches);
+        made->step = dig_grounds_step(plain, head);
+        status = dig_grounds_spread_density(head, path, &made->approaches, &made->copies, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_grounds_spread_density(head, path, &plain, &made->copies, error);
+    }
+    if (status == DIG_OK) {
+        status = fill(made, plain, path, error);
+    }
+    if (status == DIG_OK && made->approaches->entries == 0) {
+        dig_entry_set_destroy(made->approaches);
+        made->approaches = NULL;
     }
     dig_entry_set_destroy(plain);
     if (status != DIG_OK) {

@@ -2,40 +2,12 @@
 
 #include "tables/load.h"
 
-#include "tables/density_scale.h"
 #include "tables/grounds.h"
 #include "tables/load_covariance.h"
 #include "tables/store_private.h"
 
 #include <assert.h>
 #include <string.h>
-
-// Where an entry has one packing, its spread is pooled from all that were dug without an effect.
-static enum dig_status load_approaches(sqlite3 *const db, const char *const path,
-                                       const struct dig_table_head *const head,
-                                       struct dig_entry_set **const       set,
-                                       struct dig_error *const            error)
-{
-    struct dig_entry_set *plain  = NULL;
-    struct dig_entry_set *other  = NULL;
-    size_t                copies = 1;
-    enum dig_status       status =
-        dig_grounds_load(db, path, head, DIG_GROUNDS_APPROACHED, &other, error);
-    if (status == DIG_OK && other->entries > 0) {
-        status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
-        if (status == DIG_OK) {
-            dig_grounds_pool_spread(plain, other);
-            status = dig_grounds_spread_density(head, path, &other, &copies, error);
-        }
-        dig_entry_set_destroy(plain);
-    }
-    if (status != DIG_OK || other->entries == 0) {
-        dig_entry_set_destroy(other);
-        return status;
-    }
-    *set = other;
-    return DIG_OK;
-}
 
 // as_dug: a density that stands for all stays one.
 static enum dig_status read_table(const char *const path, const bool as_dug,
@@ -55,9 +27,6 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
     status                       = dig_sql_load(db, path, &head, &set, error);
     if (status == DIG_OK && set != NULL) {
         status = dig_sql_load_covariance(db, path, &head, set, error);
-    }
-    if (status == DIG_OK && set != NULL) {
-        status = load_approaches(db, path, &head, &set->approaches, error);
     }
     if (status == DIG_OK && effects != NULL) {
         status = dig_grounds_load(db, path, &head, DIG_GROUNDS_VARIED, &varied, error);

@@ -26,7 +26,8 @@ DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, sqlite3 **db,
                                                  struct dig_error      *error);
 
 /// What was dug without an effect, from an open database, which should be in a transaction; there
-/// may be no entries.
+/// may be no entries. Where one has a single packing, its spread is pooled from all of them that
+/// have more.
 DIG_MUST_CHECK enum dig_status dig_sql_load(sqlite3 *db, const char *path,
                                             const struct dig_table_head *head,
                                             struct dig_curve_set **set, struct dig_error *error);

@@ -1,4 +1,4 @@
-// Tests for tables/load_file.c, upgrade.c and listed.c: digs at another depth or attack in a
+// Tests for tables/load.c, upgrade.c and listed.c: digs at another depth or attack in a
 // table, and tables from before there were any.
 
 #include "tables/load.h"
