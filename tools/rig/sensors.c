@@ -1,7 +1,7 @@
 #include "tools/rig/sensors.h"
 
+#include "core/chance.h"
 #include "core/units.h"
-#include "tools/rig/bus/wire.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -16,7 +16,7 @@ struct dig_rig_noise dig_rig_noise_init(const uint64_t seed)
 // In (0, 1): the middle of each of 2^53 steps, never the ends.
 static double uniform(struct dig_rig_noise *const noise)
 {
-    return dig_rig_wire_random(&noise->state) + 0x1p-54;
+    return dig_chance_uniform(&noise->state) + 0x1p-54;
 }
 
 double dig_rig_noise_normal(struct dig_rig_noise *const noise)

@@ -1,5 +1,5 @@
+#include "core/chance.h"
 #include "tools/rig/bus/modbus_server.h"
-#include "tools/rig/bus/wire.h"
 
 #include <assert.h>
 #include <poll.h>
@@ -37,7 +37,7 @@ static bool strikes(struct dig_rig_modbus *const server, const enum dig_rig_faul
                     const double time_s)
 {
     const double share = dig_rig_fault_amount(server->board->faults, kind, time_s);
-    return share > 0.0 && dig_rig_wire_random(&server->random) < share;
+    return share > 0.0 && dig_chance_uniform(&server->random) < share;
 }
 
 // What a fault makes of a request: true when it is not to be answered as it should.

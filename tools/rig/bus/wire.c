@@ -1,15 +1,9 @@
 #include "tools/rig/bus/wire.h"
 
+#include "core/chance.h"
+
 #include <assert.h>
 #include <string.h>
-
-double dig_rig_wire_random(uint64_t *const random) // splitmix64, Steele, Lea and Flood 2014
-{
-    uint64_t z = (*random += 0x9E3779B97F4A7C15U);
-    z          = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-    z          = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 // Where a frame goes once it is past the faults.
 struct sink {
@@ -49,7 +43,7 @@ static bool is_overtaken(struct dig_rig_wire *const wire, const double share,
         wire->overtaken++;
         return true;
     }
-    if (!wire->waits && dig_rig_wire_random(&wire->random) < share) {
+    if (!wire->waits && dig_chance_uniform(&wire->random) < share) {
         wire->waits   = true;
         wire->waiting = *frame;
         return true;
@@ -71,12 +65,12 @@ void dig_rig_wire_put(struct dig_rig_wire *const wire, const struct dig_rig_faul
     const double      reorder = dig_rig_fault_amount(faults, DIG_RIG_FAULT_REORDER, time_s);
 
     struct dig_rig_can_frame out = *frame;
-    if (drop > 0.0 && dig_rig_wire_random(&wire->random) < drop) {
+    if (drop > 0.0 && dig_chance_uniform(&wire->random) < drop) {
         wire->dropped++;
         return;
     }
-    if (corrupt > 0.0 && dig_rig_wire_random(&wire->random) < corrupt) {
-        const unsigned bit = (unsigned)(64.0 * dig_rig_wire_random(&wire->random));
+    if (corrupt > 0.0 && dig_chance_uniform(&wire->random) < corrupt) {
+        const unsigned bit = (unsigned)(64.0 * dig_chance_uniform(&wire->random));
         out.data[bit / 8] ^= (uint8_t)(1U << (bit % 8));
         wire->damaged++;
     }
@@ -88,7 +82,7 @@ void dig_rig_wire_put(struct dig_rig_wire *const wire, const struct dig_rig_faul
         return;
     }
     send(context, &out);
-    if (twice > 0.0 && dig_rig_wire_random(&wire->random) < twice) {
+    if (twice > 0.0 && dig_chance_uniform(&wire->random) < twice) {
         send(context, &out);
         wire->doubled++;
     }

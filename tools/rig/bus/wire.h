@@ -29,7 +29,4 @@ void dig_rig_wire_put(struct dig_rig_wire *wire, const struct dig_rig_faults *fa
                       void (*send)(void *context, const struct dig_rig_can_frame *frame),
                       void *context);
 
-/// A number in [0, 1) from a state that moves on.
-double dig_rig_wire_random(uint64_t *random);
-
 #endif // DIG_TOOLS_RIG_BUS_WIRE_H
