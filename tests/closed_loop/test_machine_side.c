@@ -135,7 +135,7 @@ static bool is_reported(const struct dig_machine_finding *const finding,
 TEST(friction_and_a_strong_offset_are_both_named)
 {
     const struct fault     none  = { .dry_N = 0.0 };
-    const struct fault     both  = { .dry_N = 1000.0, .rod_Pa = 12e5 };
+    const struct fault     both  = { .dry_N = 2000.0, .rod_Pa = 15e5 };
     struct campaign *const clean = trace(&none, 9);
     struct campaign *const c     = trace(&both, 31);
     assert_int_equal(c->finding.effects, 2);
