@@ -185,12 +185,14 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     }
 }
 
-static double rest_of_point_N(const struct dig_air *const air, const size_t s, const size_t point,
-                              const size_t joint)
+// What is left of a joint at one point, friction taken off; or what friction may take more.
+static double of_point_N(const struct dig_air *const air, const size_t s, const size_t point,
+                         const size_t joint, const bool held)
 {
     const double(*const rest_N)[DIG_JOINTS] = (const double(*)[DIG_JOINTS])(void *)air->scratch;
     const size_t points                     = air->segment[s].points;
-    return rest_N[point][joint] - smooth_at(rest_N + points, points, point, joint);
+    return held ? smooth_at(rest_N + 2 * points, points, point, joint)
+                : rest_N[point][joint] - smooth_at(rest_N + points, points, point, joint);
 }
 
 // Of one point: pushes and loads.
@@ -254,16 +256,16 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
             const double        m2 =
                 head ? dig_cylinder_head_m2(cylinder) : -dig_cylinder_rod_m2(cylinder);
             for (size_t p = 0; p < segment->points; p++) {
-                point[p].calm_Pa[c] -= rest_of_point_N(air, s, p, j) / (cylinder->count * m2);
+                point[p].calm_Pa[c] -= of_point_N(air, s, p, j, false) / (cylinder->count * m2);
             }
         }
     }
 }
 
-void dig_air_rest(const struct dig_air *const air, const struct dig_correction correction[],
-                  const bool calm, double rest[])
+// Means of either over the points of every row, in its sigmas.
+static void of_rows(const struct dig_air *const air, const struct dig_correction correction[],
+                    const bool calm, const bool held, double out[])
 {
-    assert(air != NULL && correction != NULL && rest != NULL);
     for (size_t s = 0; s < air->segments; s++) {
         const struct dig_air_segment *const segment = &air->segment[s];
         rest_of(air, s, &correction[s], calm);
@@ -272,30 +274,23 @@ void dig_air_rest(const struct dig_air *const air, const struct dig_correction c
             const size_t                    first = row->first - segment->first_point;
             double                          sum_N = 0.0;
             for (size_t p = first; p < first + row->points; p++) {
-                sum_N += rest_of_point_N(air, s, p, row->joint);
+                sum_N += of_point_N(air, s, p, row->joint, held);
             }
-            rest[r] = sum_N / (double)row->points / row->sigma_N;
+            out[r] = sum_N / (double)row->points / row->sigma_N;
         }
     }
+}
+
+void dig_air_rest(const struct dig_air *const air, const struct dig_correction correction[],
+                  const bool calm, double rest[])
+{
+    assert(air != NULL && correction != NULL && rest != NULL);
+    of_rows(air, correction, calm, false, rest);
 }
 
 void dig_air_held(const struct dig_air *const air, const struct dig_correction correction[],
                   double held[])
 {
     assert(air != NULL && correction != NULL && held != NULL);
-    for (size_t s = 0; s < air->segments; s++) {
-        const struct dig_air_segment *const segment = &air->segment[s];
-        const double(*const more_N)[DIG_JOINTS] =
-            (const double(*)[DIG_JOINTS])(void *)air->scratch + 2 * segment->points;
-        rest_of(air, s, &correction[s], false);
-        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
-            const struct dig_air_row *const row   = &air->row[r];
-            const size_t                    first = row->first - segment->first_point;
-            double                          sum_N = 0.0;
-            for (size_t p = first; p < first + row->points; p++) {
-                sum_N += smooth_at(more_N, segment->points, p, row->joint);
-            }
-            held[r] = sum_N / (double)row->points / row->sigma_N;
-        }
-    }
+    of_rows(air, correction, false, true, held);
 }

@@ -127,9 +127,14 @@ void dig_machine_write_candidates(struct dig_machine_search *const s, const doub
 {
     finding->candidates = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        struct dig_fit_answer       answer = { .at = s->fit.at, .covariance = s->fit.covariance };
-        struct dig_candidate *const out    = &finding->candidate[finding->candidates++];
+        struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
+        size_t                to     = finding->candidates++;
         dig_fit_solve(&s->fit, 1U << e, &answer);
+        for (; to > 0 && finding->candidate[to - 1].log_evidence < answer.log_evidence; to--) {
+            finding->candidate[to] = finding->candidate[to - 1];
+        }
+        struct dig_candidate *const out = &finding->candidate[to];
+
         *out = (struct dig_candidate){
             .effect       = (enum dig_effect_id)e,
             .log_evidence = answer.log_evidence,
@@ -139,14 +144,6 @@ void dig_machine_write_candidates(struct dig_machine_search *const s, const doub
             .seen_in   = DIG_PART_AIR,
         };
         out->parameters = write_parameters(s, out->effect, out->parameter);
-    }
-    for (size_t i = 1; i < finding->candidates; i++) {
-        const struct dig_candidate moved = finding->candidate[i];
-        size_t                     to    = i;
-        for (; to > 0 && finding->candidate[to - 1].log_evidence < moved.log_evidence; to--) {
-            finding->candidate[to] = finding->candidate[to - 1];
-        }
-        finding->candidate[to] = moved;
     }
 }
 
@@ -201,21 +198,18 @@ void dig_machine_write_own_payload(struct dig_machine_search *const s,
 void dig_machine_write_sets(const struct dig_machine_search *const s,
                             struct dig_machine_finding *const      finding)
 {
-    struct dig_fit_answer found = { .at = NULL };
-    dig_fit_solve(&s->fit, s->set, &found);
-    finding->sets = 0;
+    const double found = dig_fit_evidence(&s->fit, s->set);
+    finding->sets      = 0;
     for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
             continue;
         }
         struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
         for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
-            struct dig_fit_answer other = { .at = NULL };
-            if (((s->set >> f) & 1U) == 0) {
-                dig_fit_solve(&s->fit, (s->set & ~(1U << e)) | (1U << f), &other);
-                if (other.log_evidence > found.log_evidence - DIG_MACHINE_TIE) {
-                    like.effect[like.effects++] = (enum dig_effect_id)f;
-                }
+            const unsigned instead = (s->set & ~(1U << e)) | (1U << f);
+            if (((s->set >> f) & 1U) == 0 &&
+                dig_fit_evidence(&s->fit, instead) > found - DIG_MACHINE_TIE) {
+                like.effect[like.effects++] = (enum dig_effect_id)f;
             }
         }
         if (like.effects > 1) {

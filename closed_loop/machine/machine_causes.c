@@ -189,29 +189,25 @@ static void set_widths(struct work *const w)
     }
 }
 
-static void solve(struct work *const w, const unsigned named, const bool whole,
-                  struct dig_fit_answer *const answer)
+// The log evidence where these are named; whole: with values and covariance.
+static double solve(struct work *const w, const unsigned named, const bool whole)
 {
     for (size_t c = 0; c < w->fit.lines.columns; c++) {
         const int  cause = cause_of(&w->fit.lines.column[c]);
         const bool wide  = cause >= 0 && ((named >> cause) & 1U) != 0;
         w->width[c]      = wide ? w->gross[c] : w->base[c];
     }
-    *answer = (struct dig_fit_answer){ .at         = whole ? w->fit.at : NULL,
-                                       .covariance = whole ? w->fit.covariance : NULL };
-    dig_fit_solve_each(&w->fit, w->width, answer);
+    struct dig_fit_answer answer = { .at         = whole ? w->fit.at : NULL,
+                                     .covariance = whole ? w->fit.covariance : NULL };
+    dig_fit_solve_each(&w->fit, w->width, &answer);
+    return answer.log_evidence;
 }
 
 // Of causes that are asked for.
 static double evidence(void *const context, const unsigned named)
 {
-    struct work *const    w = context;
-    struct dig_fit_answer answer;
-    if ((named & ~w->asked) != 0) {
-        return -INFINITY;
-    }
-    solve(w, named, false, &answer);
-    return answer.log_evidence;
+    struct work *const w = context;
+    return (named & ~w->asked) == 0 ? solve(w, named, false) : -(double)INFINITY;
 }
 
 // Sums the equations where the lines stand; s2 by what everything together leaves.
@@ -225,17 +221,16 @@ static void take_slopes(struct work *const w)
 static unsigned find(struct work *const w)
 {
     const struct dig_greedy causes = { DIG_CAUSES, log(DIG_CAUSES / false_alarm), evidence, w };
-    struct dig_fit_answer   answer;
-    unsigned                named = 0;
+    unsigned                named  = 0;
     take_slopes(w);
     // Rows of valves that hunt scatter more than their sensors.
-    solve(w, (1U << DIG_CAUSES) - 1U, true, &answer);
+    (void)solve(w, (1U << DIG_CAUSES) - 1U, true);
     (void)dig_machine_noise_widen(&w->fit.lines, w->fit.at);
     for (int round = 0; round < ROUNDS; round++) {
         const unsigned before = named;
         take_slopes(w);
         named = dig_greedy_select(&causes, 0);
-        solve(w, named, true, &answer);
+        (void)solve(w, named, true);
         // Near its end this moves within a fortieth of what is allowed.
         if (dig_fit_step(&w->fit, w->width) < 0.025 && named == before) {
             break;
@@ -280,9 +275,8 @@ static double share_of(const struct work *const w, const size_t cause, const siz
 static void value_of(struct work *const w, const unsigned named, const size_t k,
                      struct dig_cause *const cause)
 {
-    struct dig_fit_answer answer;
-    const size_t          n = w->fit.lines.columns;
-    solve(w, named, true, &answer);
+    const size_t n = w->fit.lines.columns;
+    (void)solve(w, named, true);
     double value    = 0.0;
     double variance = 0.0;
     for (size_t a = 0; a < n; a++) {

@@ -293,14 +293,11 @@ static void add_form(const struct dig_air *const air, const enum dig_effect_id e
     for (size_t r = 0; r < air->rows; r++) {
         const double here = fabs(explained[r]);
         double       most = here;
-        for (size_t back = 1; back <= DIG_JOINTS; back++) {
-            if (back <= r && air->row[r - back].joint == air->row[r].joint &&
-                air->row[r - back].segment == air->row[r].segment) {
-                most = fmax(most, fabs(explained[r - back]));
-            }
-            if (r + back < air->rows && air->row[r + back].joint == air->row[r].joint &&
-                air->row[r + back].segment == air->row[r].segment) {
-                most = fmax(most, fabs(explained[r + back]));
+        size_t       by   = r > DIG_JOINTS ? r - DIG_JOINTS : 0;
+        for (; by <= r + DIG_JOINTS && by < air->rows; by++) {
+            if (air->row[by].joint == air->row[r].joint &&
+                air->row[by].segment == air->row[r].segment) {
+                most = fmax(most, fabs(explained[by]));
             }
         }
         wrong[r] += known->wrong_share * here + known->wrong_step * (most - here);
