@@ -1,6 +1,6 @@
 #include "closed_loop/machine/machine_drift.h"
 
-#include "closed_loop/numeric/dense.h"
+#include "closed_loop/machine/machine_fit.h"
 
 #include <assert.h>
 #include <math.h>
@@ -104,12 +104,12 @@ static void slopes_of(const struct dig_air *const air, const struct dig_air_row 
     own[2]            = unit * offset_scale_Pa * cylinder->count * area_m2[DIG_CHAMBER_HEAD];
 }
 
-// slope^T slope and slope^T rest over all rows.
+// The equations of all rows.
 static void sum_up(const struct dig_lines *const lines, const double rest[], const double z[],
-                   double slope2[COLUMNS][COLUMNS], double slope_rest[COLUMNS])
+                   struct dig_fit *const fit)
 {
-    memset(slope2, 0, COLUMNS * sizeof slope2[0]);
-    memset(slope_rest, 0, COLUMNS * sizeof slope_rest[0]);
+    memset(fit->slope2, 0, (size_t)COLUMNS * COLUMNS * sizeof fit->slope2[0]);
+    memset(fit->slope_rest, 0, COLUMNS * sizeof fit->slope_rest[0]);
     for (size_t r = 0; r < lines->air->rows; r++) {
         double slope[COLUMNS];
         slopes_of(lines->air, &lines->air->row[r], lines->trust[r], slope);
@@ -117,46 +117,26 @@ static void sum_up(const struct dig_lines *const lines, const double rest[], con
             slope[HALF + a] = z[r] * slope[a];
         }
         for (size_t a = 0; a < COLUMNS; a++) {
-            slope_rest[a] += slope[a] * lines->trust[r] * rest[r];
+            fit->slope_rest[a] += slope[a] * lines->trust[r] * rest[r];
             for (size_t b = 0; b <= a; b++) {
-                slope2[a][b] += slope[a] * slope[b];
+                fit->slope2[a * COLUMNS + b] += slope[a] * slope[b];
             }
         }
     }
 }
 
 // The evidence of one form.
-static double evidence(const size_t form, const bool follows, double slope2[COLUMNS][COLUMNS],
-                       const double slope_rest[COLUMNS], const double s2, const double share)
+static double evidence(const struct dig_fit *const fit, const size_t form, const bool follows,
+                       const double share)
 {
-    double       h[COLUMNS * COLUMNS];
-    double       b[COLUMNS];
-    size_t       of[COLUMNS];
-    size_t       columns = 0;
-    const size_t from    = form == 0 ? 0 : 1;
-    const size_t to      = form == 0 ? 1 : HALF;
-    for (size_t a = from; a < to; a++) {
-        of[columns++] = a;
+    struct dig_fit_answer answer          = { .at = NULL };
+    double                widths[COLUMNS] = { 0.0 };
+    for (size_t a = form == 0 ? 0 : 1; a < (form == 0 ? 1 : HALF); a++) {
+        widths[a]        = share;
+        widths[HALF + a] = follows ? share : 0.0;
     }
-    for (size_t a = from; a < to && follows; a++) {
-        of[columns++] = HALF + a;
-    }
-    for (size_t i = 0; i < columns; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            h[i * columns + j] = share * share * slope2[of[i]][of[j]] / s2;
-        }
-        h[i * columns + i] += 1.0;
-        b[i] = share * slope_rest[of[i]] / s2;
-    }
-    if (dig_cholesky(columns, h) != DIG_OK) {
-        return -INFINITY;
-    }
-    dig_lower_solve(columns, h, b);
-    double gain = 0.0;
-    for (size_t i = 0; i < columns; i++) {
-        gain += b[i] * b[i];
-    }
-    return 0.5 * (gain - dig_lower_log_det(columns, h));
+    dig_fit_solve_each(fit, widths, &answer);
+    return answer.log_evidence;
 }
 
 struct dig_machine_drift dig_machine_drift_ask(const struct dig_lines *const lines, const double s2)
@@ -166,21 +146,25 @@ struct dig_machine_drift dig_machine_drift_ask(const struct dig_lines *const lin
     double *const            rest  = lines->work;
     double *const            z     = rest + lines->air->rows;
     double                   tried = 0.0;
+    double                   slope2[COLUMNS * COLUMNS];
+    double                   work[COLUMNS * COLUMNS];
+    struct dig_fit fit = { .lines.columns = COLUMNS, .slope2 = slope2, .s2 = s2, .work = work };
+    for (size_t c = 0; c < COLUMNS; c++) {
+        fit.lines.column[c].effect = DIG_EFFECT_UNLISTED; // none of the list is like these
+    }
     dig_lines_rest(lines, lines->absent, rest);
     for (int what = 0; what < FOLLOWS; what++) {
-        double slope2[COLUMNS][COLUMNS];
-        double slope_rest[COLUMNS];
         if (!states(lines->air, (enum follows)what, z)) {
             continue;
         }
-        sum_up(lines, rest, z, slope2, slope_rest);
+        sum_up(lines, rest, z, &fit);
         double stays = 0.0; // the best without what follows
         double found = -INFINITY;
         for (size_t i = 0; i < (size_t)FORMS * WIDTHS; i++) {
             const size_t form  = i / WIDTHS;
             const double share = width[i % WIDTHS];
-            stays              = fmax(stays, evidence(form, false, slope2, slope_rest, s2, share));
-            found              = fmax(found, evidence(form, true, slope2, slope_rest, s2, share));
+            stays              = fmax(stays, evidence(&fit, form, false, share));
+            found              = fmax(found, evidence(&fit, form, true, share));
             tried += 1.0;
         }
         if (found - stays > drift.log_lead) {
