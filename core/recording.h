@@ -12,6 +12,7 @@
 /// force and moment of the soil on the bucket, moments about the moving pin, means over the window
 /// around t; NaN where one was not measured. carried_kg is the mass of the grains whose centre lies
 /// inside the bucket's closed profile and width, at the window's end; NaN where nobody can know it.
+/// Its members are the columns of files/recording_csv.c, in this order.
 struct dig_force_row {
     double t_s, pin_x_m, pin_z_m, theta_deg;
     double Fx_N, Fy_N, Fz_N, Mx_Nm, My_Nm, Mz_Nm;

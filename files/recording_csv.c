@@ -14,6 +14,7 @@
 #define GAP_SLACK  1e-6 // of the gap: times are written with few digits
 #define TIME_MAX_s 9e9  // nanoseconds in 64 bits hold it; of seconds since 1970 till the year 2255
 
+// As struct dig_force_row has them, one behind the other.
 static const struct dig_csv_column force_column[] = {
     { .name = "t_s" },
     { .name = "pin_x_m" },
@@ -28,6 +29,7 @@ static const struct dig_csv_column force_column[] = {
     { .name = "carried_kg", .optional = true, .may_empty = true },
 };
 #define FORCE_COLUMNS (sizeof force_column / sizeof force_column[0])
+_Static_assert(sizeof(struct dig_force_row) == FORCE_COLUMNS * sizeof(double), "a column each");
 
 // Time, then one column a signal in the signals' own order: of a machine with cylinders, or of a
 // rig with a force sensor.
@@ -102,23 +104,6 @@ static enum dig_status check_rate(const struct dig_csv *const csv, const bool ea
     return DIG_OK;
 }
 
-static struct dig_force_row force_row(const double v[const FORCE_COLUMNS])
-{
-    return (struct dig_force_row){
-        .t_s        = v[0],
-        .pin_x_m    = v[1],
-        .pin_z_m    = v[2],
-        .theta_deg  = v[3],
-        .Fx_N       = v[4],
-        .Fy_N       = v[5],
-        .Fz_N       = v[6],
-        .Mx_Nm      = v[7],
-        .My_Nm      = v[8],
-        .Mz_Nm      = v[9],
-        .carried_kg = v[10],
-    };
-}
-
 // Checks the rows' times and their rate, and makes room for as many of `size` bytes.
 static enum dig_status make_rows(const struct dig_csv *const csv, const char *const path,
                                  const bool forces, const size_t size, void **const rows,
@@ -147,11 +132,8 @@ static enum dig_status take_force_rows(const struct dig_csv *const csv, const ch
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_force_row *const row = rows;
-    for (size_t i = 0; i < csv->rows; i++) {
-        row[i] = force_row(csv->value + i * csv->columns);
-    }
-    *recording = (struct dig_recording){ .rows = csv->rows, .row = row };
+    memcpy(rows, csv->value, csv->rows * sizeof(struct dig_force_row));
+    *recording = (struct dig_recording){ .rows = csv->rows, .row = rows };
     return DIG_OK;
 }
 
@@ -219,23 +201,6 @@ enum dig_status dig_machine_recording_read(const char *const                   p
     return status;
 }
 
-static void put_header(FILE *const file, const size_t columns, const struct dig_csv_column column[])
-{
-    for (size_t i = 0; i < columns; i++) {
-        (void)fprintf(file, "%s%s", i == 0 ? "" : ",", column[i].name);
-    }
-    (void)fputc('\n', file);
-}
-
-static void put_field(FILE *const file, const double value)
-{
-    if (isnan(value)) {
-        (void)fputc(',', file);
-    } else {
-        (void)fprintf(file, ",%.9g", value);
-    }
-}
-
 enum dig_status dig_recording_write(const char *const                 path,
                                     const struct dig_recording *const recording,
                                     struct dig_error *const           error)
@@ -248,16 +213,19 @@ enum dig_status dig_recording_write(const char *const                 path,
         return status;
     }
     struct dig_c_locale locale  = dig_c_locale_enter();
-    const bool          carried = dig_recording_knows_carried(recording);
-    put_header(out.file, carried ? FORCE_COLUMNS : FORCE_COLUMNS - 1, force_column);
+    const size_t        columns = FORCE_COLUMNS - (dig_recording_knows_carried(recording) ? 0 : 1);
+    for (size_t c = 0; c < columns; c++) {
+        (void)fprintf(out.file, "%s%s", c == 0 ? "" : ",", force_column[c].name);
+    }
+    (void)fputc('\n', out.file);
     for (size_t i = 0; i < recording->rows; i++) {
-        const struct dig_force_row *const r = &recording->row[i];
-        (void)fprintf(out.file, "%.9g,%.9g,%.9g,%.9g", r->t_s, r->pin_x_m, r->pin_z_m,
-                      r->theta_deg);
-        const double felt[] = { r->Fx_N,  r->Fy_N,  r->Fz_N,      r->Mx_Nm,
-                                r->My_Nm, r->Mz_Nm, r->carried_kg };
-        for (size_t f = 0; f < (carried ? 7 : 6); f++) {
-            put_field(out.file, felt[f]);
+        double value[FORCE_COLUMNS];
+        memcpy(value, &recording->row[i], sizeof value);
+        for (size_t c = 0; c < columns; c++) {
+            (void)fputs(c == 0 ? "" : ",", out.file);
+            if (!isnan(value[c])) {
+                (void)fprintf(out.file, "%.9g", value[c]);
+            }
         }
         (void)fputc('\n', out.file);
     }
