@@ -158,47 +158,23 @@ void dig_cell_curve(const struct dig_cell *const cell, struct dig_curve *const c
     }
 }
 
-// Weighted sum of the cell's curves, four at a time so that a point stays in a register; in the
-// order of the corners, as dig_cell_mean() adds them.
-static void blend(const struct dig_cell *const cell, const float *const of[],
-                  double out[DIG_CURVE_POINTS])
-{
-    const double *const w = cell->weight;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        out[k] = 0.0;
-    }
-    size_t c = 0;
-    for (; c + 4 <= cell->corners; c += 4) {
-        const float *const p0 = of[c];
-        const float *const p1 = of[c + 1];
-        const float *const p2 = of[c + 2];
-        const float *const p3 = of[c + 3];
-        const double       w0 = w[c];
-        const double       w1 = w[c + 1];
-        const double       w2 = w[c + 2];
-        const double       w3 = w[c + 3];
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double two = (out[k] + w0 * (double)p0[k]) + w1 * (double)p1[k];
-            out[k]           = (two + w2 * (double)p2[k]) + w3 * (double)p3[k];
-        }
-    }
-    for (; c < cell->corners; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            out[k] += w[c] * (double)of[c][k];
-        }
-    }
-}
-
 void dig_cell_blend(const struct dig_cell *const cell, const enum dig_channel channel,
                     double mean[DIG_CURVE_POINTS], double sd[DIG_CURVE_POINTS])
 {
     assert(cell != NULL && mean != NULL && sd != NULL);
-    const float *mean_of[DIG_CELL_CORNERS];
-    const float *sd_of[DIG_CELL_CORNERS];
-    for (size_t c = 0; c < cell->corners; c++) {
-        mean_of[c] = cell->curve[c]->mean[channel];
-        sd_of[c]   = cell->curve[c]->sd[channel];
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        mean[k] = 0.0;
+        sd[k]   = 0.0;
     }
-    blend(cell, mean_of, mean);
-    blend(cell, sd_of, sd);
+    for (size_t c = 0; c < cell->corners; c++) {
+        const float *const its_mean = cell->curve[c]->mean[channel];
+        const float *const its_sd   = cell->curve[c]->sd[channel];
+        const double       weight   = cell->weight[c];
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            mean[k] += weight * (double)its_mean[k];
+        }
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd[k] += weight * (double)its_sd[k];
+        }
+    }
 }

@@ -121,8 +121,14 @@ TEST(interpolation_meets_the_entries_and_their_products_between)
     // The family is linear in friction and rolling; density enters at the middle of its logarithm.
     const struct dig_gravel between = { { 0.56, 0.25, sqrt(1500.0 * 2500.0) } };
     const struct dig_gravel light = { { 0.56, 0.25, 1500 } }, heavy = { { 0.56, 0.25, 2500 } };
+    struct dig_cell         cell;
+    double                  mean[DIG_CURVE_POINTS], sd[DIG_CURVE_POINTS];
     assert_int_equal(dig_match_interpolate(set, &between, MADE_ACTUAL, &curve), DIG_OK);
+    assert_int_equal(dig_cell_find(set, &between, MADE_ACTUAL, &cell), DIG_OK);
+    dig_cell_blend(&cell, DIG_CHANNEL_MY_Nm, mean, sd);
     for (int k = 0; k < DIG_CURVE_POINTS; k += 17) {
+        assert_close(mean[k], dig_cell_mean(&cell, DIG_CHANNEL_MY_Nm, (size_t)k), 0.0);
+        assert_close(sd[k], dig_cell_sd(&cell, DIG_CHANNEL_MY_Nm, (size_t)k), 0.0);
         const double expected = 0.5 * (made_moment_Nm(&light, MADE_ACTUAL, k / 255.0, 0.0) +
                                        made_moment_Nm(&heavy, MADE_ACTUAL, k / 255.0, 0.0));
         assert_close((double)curve.mean[0][k], expected, 1e-5);
