@@ -116,7 +116,6 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         e->progress = (double)NAN;
     }
     if (trajectory < 0) {
-        dig_followed_off(&e->recording->followed);
         e->progress   = (double)NAN;
         e->off_path_m = (double)NAN;
         return;
@@ -132,8 +131,6 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         &e->route[trajectory], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
-    dig_followed_on(&e->recording->followed, trajectory, e->progress, e->off_path_m,
-                    e->settings.path_limit_m, &e->recording->path);
 }
 
 // The trajectory is dug to its end, or nearly, and the bucket has left it.
@@ -168,9 +165,7 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
-    dig_recorded_dig_add(e->recording, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
-    dig_followed_sample(&e->recording->followed, e->recording->window.open, time_ns,
-                        sqrt(e->lambda) * dig_window_hole_s(e->set->smooth_half_s));
+    dig_recorded_dig_add(e->recording, e->set, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
 
     switch (event) {
     case DIG_EVENT_CONTACT: start_path(e, point); break;

@@ -33,7 +33,7 @@ files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json 
 estimator              estimator estimator_tick
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
 estimator/track        inertia_error phase recorded_dig route settings track window | abort_detection ending estimate
-                       followed motion
+                       motion
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
                        approach_response interpolate live_recording observe_dig | laid
 estimator/effects      effect template

@@ -24,7 +24,7 @@ void dig_live_recording_add(struct dig_live_recording *const  live,
     }
     const struct dig_path_point point =
         dig_recorded_dig_point(set, lambda, e->pin_X_m, e->pin_Z_m, e->phi_rad);
-    dig_recorded_dig_add(&live->recording, lambda, e->time_ns, &e->wrench, 0.0, &point);
+    dig_recorded_dig_add(&live->recording, set, lambda, e->time_ns, &e->wrench, 0.0, &point);
 
     const bool in_soil = e->phase == DIG_PHASE_CONTACT || e->phase == DIG_PHASE_DIG;
     if (!live->digging && e->phase == DIG_PHASE_CONTACT) {

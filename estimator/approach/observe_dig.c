@@ -4,7 +4,6 @@
 #include "estimator/approach/approach_slots.h"
 #include "estimator/track/abort_detection.h"
 #include "estimator/track/ending.h"
-#include "estimator/track/followed.h"
 #include "estimator/track/window.h"
 
 #include <assert.h>
@@ -47,7 +46,7 @@ static enum dig_status observe_plain(const struct dig_curve_set *const set, cons
 {
     const int                  t = out->trajectory;
     struct dig_abort_detection aborted;
-    const bool                 left = !recording->followed.missing &&
+    const bool                 left = !recording->missing &&
                       dig_abort_detection_choose(set->trajectories, route, &recording->path,
                                                  limit_m, whole, &aborted) == t;
     const struct dig_track *const track = left ? &aborted.track : &whole[t];
@@ -107,13 +106,20 @@ bool dig_recorded_dig_was_aborted(const struct dig_curve_set *const          set
 {
     assert(set != NULL && settings != NULL && recording != NULL && trajectory != NULL &&
            progress != NULL);
-    struct dig_route route[DIG_TRAJECTORY_MAX];
+    const double               limit_m = settings->path_limit_m;
+    struct dig_route           route[DIG_TRAJECTORY_MAX];
+    struct dig_track           whole[DIG_TRAJECTORY_MAX];
+    struct dig_abort_detection aborted;
     make_routes(set, route);
-    if (!dig_followed_was_aborted(&recording->followed, set->trajectories, route, &recording->path,
-                                  settings->path_limit_m)) {
+    (void)dig_track_fit_all(set->trajectories, route, &recording->path, limit_m, whole);
+    const int left = recording->missing
+                         ? -1
+                         : dig_abort_detection_choose(set->trajectories, route, &recording->path,
+                                                      limit_m, whole, &aborted);
+    if (left < 0) {
         return false;
     }
-    *trajectory = recording->followed.trajectory;
-    *progress   = recording->followed.progress;
+    *trajectory = left;
+    *progress   = aborted.progress;
     return true;
 }

@@ -23,7 +23,7 @@ dig_recorded_dig_observe(const struct dig_curve_set          *set,
 
 /// For a dig that dig_recorded_dig_observe() refused: true when it followed a trajectory of the set
 /// and left it before its end; then *trajectory and *progress say which and where. Its moment is
-/// not observed, as the way out belongs to its path. About a millisecond.
+/// not observed, as the way out belongs to its path. Some milliseconds.
 bool dig_recorded_dig_was_aborted(const struct dig_curve_set          *set,
                                   const struct dig_estimator_settings *settings,
                                   const struct dig_recorded_dig *recording, int *trajectory,

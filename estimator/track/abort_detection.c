@@ -9,8 +9,10 @@
 // longest fit locates it best.
 enum { PARTS = 8, FIRST_PART = 2 };
 
-// A vertex within this share of limit_m is on the route.
-static const double on_share = 0.25;
+// A vertex within this share of limit_m is on the route; the last one within the wider share tells
+// where the path left.
+static const double on_share   = 0.25;
+static const double left_share = 0.5;
 
 // The part before the abort must fit better than the whole by this factor.
 static const double better = 0.5;
@@ -55,14 +57,16 @@ static bool leaves(const struct dig_route *const route, const struct dig_path *c
     for (size_t i = d->until; i < path->end; i++) {
         const struct dig_projection place = project(route, &d->track, path, i, reached);
         if (place.distance_m <= on_share * limit_m) {
-            on          = i;
-            reached     = fmax(reached, place.progress);
-            d->progress = reached;
+            on      = i;
+            reached = fmax(reached, place.progress);
+        }
+        if (place.distance_m <= left_share * limit_m) {
+            d->progress = fmax(d->progress, place.progress);
         }
         near = place.distance_m <= limit_m ? i : near;
     }
-    return near + 1 < path->end && d->progress >= DIG_ENDING_LEAST &&
-           d->progress < DIG_ENDING_WHOLE_FROM && !is_ahead(path, near + 1, on);
+    return near + 1 < path->end && reached >= DIG_ENDING_LEAST && reached < DIG_ENDING_WHOLE_FROM &&
+           !is_ahead(path, near + 1, on);
 }
 
 bool dig_abort_detection_find(const struct dig_route *const route,

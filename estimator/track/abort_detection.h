@@ -21,7 +21,7 @@
 struct dig_abort_detection {
     struct dig_track track;    // of the path before it
     size_t           until;    // vertices the track was fitted to
-    double           progress; // where the path left
+    double           progress; // where the path left: the farthest within half of limit_m
 };
 
 /// Detects an abort; whole is the fit of the whole path. True, and *aborted is written, when

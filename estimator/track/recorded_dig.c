@@ -16,8 +16,8 @@ void dig_recorded_dig_clear(struct dig_recorded_dig *const    recording,
 {
     assert(recording != NULL && set != NULL);
     dig_window_close(&recording->window);
-    recording->followed = (struct dig_followed){ .last_ns = recording->followed.last_ns };
-    recording->path     = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
+    recording->missing = false;
+    recording->path    = (struct dig_path){ .spacing_m = vertex_spacing_m(set) };
 }
 
 void dig_recorded_dig_contact(struct dig_recorded_dig *const     recording,
@@ -44,11 +44,17 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *const s
     };
 }
 
-void dig_recorded_dig_add(struct dig_recorded_dig *const recording, const double lambda,
+void dig_recorded_dig_add(struct dig_recorded_dig *const    recording,
+                          const struct dig_curve_set *const set, const double lambda,
                           const int64_t time_ns, const struct dig_wrench *const wrench,
                           const double bias_Nm, const struct dig_path_point *const point)
 {
-    assert(recording != NULL && wrench != NULL && point != NULL);
+    assert(recording != NULL && set != NULL && wrench != NULL && point != NULL);
+    const double step_s = 1e-9 * (double)(time_ns - recording->last_ns);
+    const double hole_s = sqrt(lambda) * dig_window_hole_s(set->smooth_half_s);
+    recording->missing |= recording->window.open && step_s > hole_s;
+    recording->last_ns = time_ns;
+
     const double                   lambda3 = lambda * lambda * lambda;
     const double                   lambda4 = lambda * lambda3;
     const struct dig_window_sample sample  = {

@@ -4,17 +4,17 @@
 #define DIG_ESTIMATOR_TRACK_RECORDED_DIG_H
 
 #include "core/curve.h"
-#include "estimator/track/followed.h"
 #include "estimator/track/path.h"
 #include "estimator/track/window.h"
 #include "estimator/wrench/soil_wrench.h"
 
 /// Zeroed: empty.
 struct dig_recorded_dig {
-    uint32_t            dig_count;
-    struct dig_followed followed;
-    struct dig_path     path;
-    struct dig_window   window;
+    uint32_t          dig_count;
+    int64_t           last_ns; // time of the newest sample
+    bool              missing; // samples of the dig were missing for too long: the path has a hole
+    struct dig_path   path;
+    struct dig_window window;
 };
 
 /// Drops the recording and waits for contact.
@@ -31,9 +31,9 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *set, do
                                              double pin_X_m, double pin_Z_m, double phi_rad);
 
 /// Adds one wrench of the machine to the window, in rig scale and rig time.
-void dig_recorded_dig_add(struct dig_recorded_dig *recording, double lambda, int64_t time_ns,
-                          const struct dig_wrench *wrench, double bias_Nm,
-                          const struct dig_path_point *point);
+void dig_recorded_dig_add(struct dig_recorded_dig *recording, const struct dig_curve_set *set,
+                          double lambda, int64_t time_ns, const struct dig_wrench *wrench,
+                          double bias_Nm, const struct dig_path_point *point);
 
 /// Size of the struct, about 2 MB: for allocating one.
 size_t dig_recorded_dig_size(void);

@@ -1,6 +1,6 @@
 // Tests for what the estimator recognises of a dig: what the bucket does (estimator/track/motion.c,
 // phase.c), which trajectory it digs, how far it gets and how it ends (track.c, window.c, ending.c,
-// followed.c). Digs of tables/reference_rig.sqlite, each in another bed, dug in eleven ways.
+// abort_detection.c). Digs of tables/reference_rig.sqlite, each in another bed, dug in eleven ways.
 //
 // A third of the digs is dug in one way each; DIG_TEST_ALL=1: all in all ways, some minutes.
 // DIG_TEST_BED=1: in each gravel's second bed, with which nothing was chosen.
