@@ -16,16 +16,12 @@ static struct dig_whitened_digs batch;
 
 static const struct dig_whitened_digs_group *make_group(void)
 {
-    static const bool       take[DIGS] = { true, true, true };
-    const struct dig_gravel gravel     = { { 0.5, 0.5, 2500 } };
-    uint64_t                seed       = 3;
-    double                  place[DIG_AXES];
+    const struct dig_gravel gravel = { { 0.5, 0.5, 2500 } };
+    uint64_t                seed   = 3;
     for (size_t i = 0; i < DIGS; i++) {
         measured[i] = made_dig(&gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
     }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, &batch);
     return &batch.group[0];
 }
 

@@ -15,17 +15,12 @@ static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
 static void dig_with_lone(const size_t lone, const double layer, uint64_t seed)
 {
     static const enum dig_effect_id layering = DIG_EFFECT_LAYERING;
-    bool                            take[DIGS];
-    double                          place[DIG_AXES];
     for (size_t i = 0; i < DIGS; i++) {
         measured[i] =
             made_dig(&gravel, i == lone ? MADE_ACTUAL : MADE_SIMPLE_A, 1, &layering, &layer, &seed);
         measured[i].order = i;
-        take[i]           = true;
     }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, &batch);
 }
 
 static void dig_with(const double layer, const uint64_t seed)
@@ -68,12 +63,8 @@ TEST(what_is_not_there_predicts_nothing)
 // A trend needs four digs: of four none can be left out.
 TEST(what_cannot_be_fitted_to_the_others_counts_nothing)
 {
-    bool   take[DIGS] = { true, true, true, true };
-    double place[DIG_AXES];
     dig_with(0.0, 5);
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    batch_digs(4, measured, &gravel, &batch);
     assert_close(gain_of(DIG_EFFECT_WEAR), 0.0, 0.0);
 }
 

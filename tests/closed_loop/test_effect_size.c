@@ -1,52 +1,28 @@
 #include "closed_loop/accuracy/effect_size.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 8 };
 
-static struct made_world         world;
-static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
-static struct dig_measured      *measured;
-static struct dig_whitened_digs *batch;
-static struct dig_soil          *soil;
-static struct dig_fitted         plain;
+static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+static struct dig_fitted        plain;
 
 static int make(void **state)
 {
-    (void)state;
-    uint64_t     seed = 3;
-    bool         take[DIGS];
-    double       place[DIG_AXES];
-    const double middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    world                                       = made_world(5);
-    measured                                    = calloc(DIGS, sizeof *measured);
-    batch                                       = malloc(sizeof *batch);
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] =
-            made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
-        take[i] = true;
-    }
-    dig_response_surface_place(world.surface, &gravel, place);
-    static const struct dig_hypothesis none = { .effects = 0 };
-    if (dig_soil_create(world.surface, world.effects, world.scatter, &soil) != DIG_OK ||
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch) != DIG_OK) {
+    static const struct dig_hypothesis none                           = { .effects = 0 };
+    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    uint64_t                           seed                           = 3;
+    if (world_setup(state) != DIG_OK) {
         return 1;
     }
-    dig_hypothesis_fit(batch, &none, middle, DIG_FIT_THOROUGH, &plain);
-    return 0;
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    free(batch);
-    free(measured);
-    made_world_finish(&world);
+    dig_in_turn(DIGS, &gravel, 0, NULL, NULL, &seed, measured);
+    batch_digs(DIGS, measured, &gravel, &batch);
+    dig_hypothesis_fit(&batch, &none, middle, DIG_FIT_THOROUGH, &plain);
     return 0;
 }
 
@@ -57,7 +33,7 @@ static double size_of_machine(const struct dig_fitted *const fitted)
         memcpy(machine[i], measured[i].machine, sizeof machine[i]);
     }
     return dig_effect_size_of_machine(
-        batch, fitted, (const double(*)[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])machine);
+        &batch, fitted, (const double(*)[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])machine);
 }
 
 // The machine adds this share of the scatter of one dig, changing sign ten times along each dig: no
@@ -143,15 +119,15 @@ TEST(what_no_gravel_explains_is_left)
     static struct dig_measured as_dug[DIGS];
     add_wave(0.0);
     memcpy(as_dug, measured, sizeof as_dug);
-    const double plainly = dig_effect_size_left(batch, &plain);
+    const double plainly = dig_effect_size_left(&batch, &plain);
     add_wave(2.0);
     const double size = size_of_machine(&plain);
     add_to_value(true);
-    const double known = dig_effect_size_left(batch, &plain);
+    const double known = dig_effect_size_left(&batch, &plain);
     memcpy(measured, as_dug, sizeof as_dug);
     add_wave(2.0);
     add_to_value(false);
-    const double left = dig_effect_size_left(batch, &plain);
+    const double left = dig_effect_size_left(&batch, &plain);
     memcpy(measured, as_dug, sizeof as_dug);
     assert_true(plainly < 1.0);
     assert_close(known, plainly, 1e-6);
@@ -167,11 +143,8 @@ TEST(digs_of_a_plain_gravel_leave_nothing)
     uint64_t seed   = 77;
     int      beyond = 0;
     for (int c = 0; c < CAMPAIGNS; c++) {
-        for (size_t i = 0; i < DIGS; i++) {
-            measured[i] =
-                made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
-        }
-        beyond += dig_effect_size_left(batch, &plain) > 1.0 ? 1 : 0;
+        dig_in_turn(DIGS, &gravel, 0, NULL, NULL, &seed, measured);
+        beyond += dig_effect_size_left(&batch, &plain) > 1.0 ? 1 : 0;
     }
     memcpy(measured, as_dug, sizeof as_dug);
     assert_true(beyond <= 2);
@@ -187,7 +160,7 @@ static double size_of(const double layer, const double cohesion)
     chosen.number[DIG_AT_CONTRAST(0)] = 1.0;
     chosen.number[DIG_AT_U(1)]        = layer;
     chosen.number[DIG_AT_CONTRAST(1)] = 1.0;
-    return dig_effect_size_of_soil(batch, &chosen, 1, plain.noise);
+    return dig_effect_size_of_soil(&batch, &chosen, 1, plain.noise);
 }
 
 // The layer of the made world is a bump that no gravel has: it counts in proportion, and by itself.
@@ -208,4 +181,4 @@ TEST(at_the_floor_the_odds_are_even)
     assert_true(dig_effect_size_chance(1.5) > 0.95);
 }
 
-TESTS_WITH(make, clean)
+TESTS_WITH(make, world_teardown)

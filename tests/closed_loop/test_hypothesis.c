@@ -72,18 +72,13 @@ static double made_variance(const struct dig_whitened_digs_group *const group,
 TEST(the_tables_error_counts_for_less_beside_larger_digs)
 {
     static const struct dig_hypothesis plain                         = { .effects = 0 };
-    static const bool                  take[DIGS]                    = { true, true, true, true };
     const struct dig_gravel            gravel                        = { { 0.6, 0.55, 3900 } };
     const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     for (double larger = 1.0; larger < 4.0; larger += 2.0) {
         static struct dig_whitened_digs batch;
         struct dig_fitted               fitted;
-        double                          place[DIG_AXES];
         dig(&gravel, larger, 9);
-        dig_response_surface_place(world.surface, &gravel, place);
-        assert_int_equal(
-            dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch),
-            DIG_OK);
+        batch_digs(DIGS, measured, &gravel, &batch);
         dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &fitted);
         const struct dig_gravel found = dig_response_surface_gravel(world.surface, fitted.number);
         const double            truth = made_variance(&batch.group[0], &found);
@@ -169,18 +164,14 @@ TEST(a_fit_ends_where_the_squares_it_tells_are_least)
         { .effects = 1, .effect = { DIG_EFFECT_WEAR } },
         { .effects = 2, .effect = { DIG_EFFECT_COHESION, DIG_EFFECT_WEAR } },
     };
-    static const bool       take[DIGS]                    = { true, true, true, true };
     const struct dig_gravel gravel                        = { { 0.6, 0.55, 2500 } };
     const double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 1.0, 0.05, 1.0 };
     static struct dig_whitened_digs batch;
-    double                          place[DIG_AXES];
     dig(&gravel, 1.3, 17);
     for (size_t i = 0; i < DIGS; i++) {
         measured[i].order = i;
     }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, &batch);
     for (size_t h = 0; h < sizeof all / sizeof all[0]; h++) {
         struct dig_fitted fitted;
         dig_hypothesis_fit(&batch, &all[h], start, DIG_FIT_BARE, &fitted);

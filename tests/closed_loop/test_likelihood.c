@@ -31,15 +31,10 @@ static const double                start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
 // does what another gravel would do, the other anything.
 static void make_digs(const struct dig_gravel *const gravel, uint64_t *const seed)
 {
-    static const bool take[DIGS] = { true, true, true, true };
-    double            place[DIG_AXES];
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] =
-            made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, seed);
-    }
+    double place[DIG_AXES];
+    dig_in_turn(DIGS, gravel, 0, NULL, NULL, seed, measured);
+    batch_digs(DIGS, measured, gravel, &batch);
     dig_response_surface_place(world.surface, gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
     steps = (struct dig_steps){ .steps = STEPS };
     for (size_t g = 0; g < batch.groups; g++) {
         const double           changed[DIG_AXES] = { place[0] + 0.4, place[1], place[2] };

@@ -1,58 +1,28 @@
 #include "closed_loop/search/portmanteau.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 6, DRAWS = 99 };
 
-static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
-static struct made_world         world;
-static struct dig_soil          *soil;
-static struct dig_whitened_digs *batch;
-static struct dig_measured      *measured;
-
-static int make(void **state)
-{
-    (void)state;
-    world    = made_world(5);
-    measured = calloc(DIGS, sizeof *measured);
-    batch    = malloc(sizeof *batch);
-    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    free(batch);
-    free(measured);
-    made_world_finish(&world);
-    return 0;
-}
+static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_whitened_digs batch;
+static struct dig_measured      measured[DIGS];
 
 // Three simple and three real digs of a gravel that coheres, which none of the table does.
 static struct dig_whiteness judge(const double magnitude, uint64_t seed)
 {
     const enum dig_effect_id cohesion = DIG_EFFECT_COHESION;
-    bool                     take[DIGS];
-    double                   place[DIG_AXES];
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &cohesion,
-                               &magnitude, &seed);
-        take[i]     = true;
-    }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    dig_in_turn(DIGS, &gravel, 1, &cohesion, &magnitude, &seed, measured);
+    batch_digs(DIGS, measured, &gravel, &batch);
     const struct dig_hypothesis none                          = { .effects = 0 };
     double                      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_fitted           plain;
-    memcpy(start, place, sizeof place);
-    dig_hypothesis_fit(batch, &none, start, DIG_FIT_THOROUGH, &plain);
-    const struct dig_whiteness white = dig_portmanteau_judge(batch, &plain, DRAWS, seed);
+    dig_response_surface_place(world.surface, &gravel, start);
+    dig_hypothesis_fit(&batch, &none, start, DIG_FIT_THOROUGH, &plain);
+    const struct dig_whiteness white = dig_portmanteau_judge(&batch, &plain, DRAWS, seed);
     assert_int_equal(white.digs, DIGS);
     return white;
 }
@@ -100,4 +70,4 @@ TEST(what_lasts_along_the_dig_is_not_white)
     }
 }
 
-TESTS_WITH(make, clean)
+TESTS_WITH(world_setup, world_teardown)

@@ -19,17 +19,10 @@ static const struct dig_hypothesis plain = { .effects = 0 };
 
 static struct dig_fitted fit_digs(const struct dig_gravel *const gravel, uint64_t *const seed)
 {
-    static const bool take[DIGS]                    = { true, true, true, true };
     const double      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    double            place[DIG_AXES];
     struct dig_fitted fitted;
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] =
-            made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, seed);
-    }
-    dig_response_surface_place(world.surface, gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    dig_in_turn(DIGS, gravel, 0, NULL, NULL, seed, measured);
+    batch_digs(DIGS, measured, gravel, &batch);
     dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &fitted);
     return fitted;
 }

@@ -52,8 +52,7 @@ static double progress_at(const size_t t, const double x_m)
 // Three simple and three real digs, with factor[] of the hump, so much further along.
 static void dig(const double ahead_m, const double factor[], uint64_t seed)
 {
-    const struct dig_gravel gravel     = { { 0.6, 0.55, 2500 } };
-    static const bool       take[DIGS] = { true, true, true, true, true, true };
+    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
     for (size_t i = 0; i < DIGS; i++) {
         const enum made_trajectory which = i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
         struct dig_measured       *m     = &measured[i];
@@ -72,10 +71,7 @@ static void dig(const double ahead_m, const double factor[], uint64_t seed)
             }
         }
     }
-    double place[DIG_AXES];
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, &batch);
 }
 
 static struct dig_search search(void)
@@ -120,9 +116,7 @@ TEST(what_is_no_hump_is_no_rock)
         measured[i] =
             made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, effect, strong, &seed);
     }
-    static const bool take[DIGS] = { true, true, true, true, true, true };
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, &batch), DIG_OK);
+    batch_digs(DIGS, measured, NULL, &batch);
     found = search();
     assert_true(found.significant && found.unlisted);
     assert_false(found.is_rock);

@@ -18,11 +18,8 @@ static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], const size_t times,
                                           const double noise, uint64_t seed)
 {
-    bool                            take[DIGS];
-    double                          place[DIG_AXES];
     struct dig_whitened_digs *const batch = malloc(sizeof *batch);
     for (size_t i = 0; i < DIGS; i++) {
-        take[i] = true;
         if (i % times == 0) {
             measured[i] = made_dig(&gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
             continue;
@@ -34,9 +31,7 @@ static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], co
             }
         }
     }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, batch);
     return batch;
 }
 

@@ -14,11 +14,7 @@ static struct dig_measured measured[DIGS];
 static void dig(const struct dig_gravel *const gravel, const size_t effects,
                 const enum dig_effect_id effect[], const double magnitude[], uint64_t *const seed)
 {
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] = made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, effects, effect,
-                               magnitude, seed);
-        measured[i].order = i;
-    }
+    dig_in_turn(DIGS, gravel, effects, effect, magnitude, seed, measured);
 }
 
 // Makes every dig so many times as strong.
@@ -35,23 +31,11 @@ static void grow(const double times[DIGS])
 
 static struct dig_whitened_digs batch; // of the digs searched last
 
-static void put_in_batch(const struct dig_gravel *const gravel, const size_t digs)
-{
-    bool   take[DIGS];
-    double place[DIG_AXES];
-    for (size_t i = 0; i < DIGS; i++) {
-        take[i] = i < digs;
-    }
-    dig_response_surface_place(world.surface, gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
-}
-
 static struct dig_search search_some(const struct dig_gravel *const gravel, const size_t digs,
                                      const double false_alarm, const uint64_t seed)
 {
     static struct dig_search found;
-    put_in_batch(gravel, digs);
+    batch_digs(digs, measured, gravel, &batch);
     dig_search_run(&batch, false_alarm, DRAWS, seed, &found);
     return found;
 }
@@ -337,7 +321,7 @@ TEST(what_is_open_of_the_machine_is_no_effect_of_the_soil)
         const double off[]     = { c % 2 == 0 ? 1.0 : -1.0 };
         for (size_t effects = 0; effects < 2; effects++) {
             dig(&gravel, effects, &slope, &magnitude, &seed);
-            put_in_batch(&gravel, DIGS);
+            batch_digs(DIGS, measured, &gravel, &batch);
             struct dig_steps steps = open_beside(&gravel);
             batch.steps            = &steps;
             dig_steps_settle(&batch, off);

@@ -13,14 +13,10 @@ static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
 // A dig of either trajectory.
 static void make_batch(double place[DIG_AXES])
 {
-    const bool take[DIGS] = { true, true };
-    uint64_t   seed       = 3;
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] = made_dig(&gravel, i == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
-    }
+    uint64_t seed = 3;
+    dig_in_turn(DIGS, &gravel, 0, NULL, NULL, &seed, measured);
     dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, &batch);
 }
 
 static void fill(const struct dig_hypothesis *const hypothesis, const double number[],

@@ -2,8 +2,7 @@
 
 #include "closed_loop/verdict/tell_apart.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,34 +10,13 @@
 enum { DIGS = 4 };
 
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
-static struct made_world       world;
-static struct dig_soil        *soil;
-static struct dig_search      *search;
-static struct dig_trace       *trace;
+static struct dig_search       search;
+static struct dig_trace        trace;
 static struct dig_measured     measured[DIGS];
-
-static int make(void **state)
-{
-    (void)state;
-    world  = made_world(5);
-    search = calloc(1, sizeof *search);
-    trace  = calloc(1, sizeof *trace);
-    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    free(search);
-    free(trace);
-    made_world_finish(&world);
-    return 0;
-}
 
 static void candidate(const enum dig_effect_id effect, const double u)
 {
-    struct dig_fitted *const f = &search->rival[search->rivals++];
+    struct dig_fitted *const f = &search.rival[search.rivals++];
     *f                         = (struct dig_fitted){ .hypothesis = { 1, { effect }, false } };
     dig_response_surface_place(world.surface, &gravel, f->number);
     f->number[DIG_AT_U(0)]        = u;
@@ -56,21 +34,21 @@ static void tell(const size_t channels, const size_t effects, const enum dig_eff
                                       .soil     = soil,
                                       .digs     = DIGS,
                                       .measured = measured,
-                                      .search   = search };
-    memset(search, 0, sizeof *search);
-    memset(trace, 0, sizeof *trace);
+                                      .search   = &search };
+    memset(&search, 0, sizeof search);
+    memset(&trace, 0, sizeof trace);
     for (size_t i = 0; i < DIGS; i++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             measured[i].measured[c] = c < channels;
         }
     }
-    trace->sets           = 1;
-    trace->set[0].effects = effects;
+    trace.sets           = 1;
+    trace.set[0].effects = effects;
     for (size_t i = 0; i < effects; i++) {
-        trace->set[0].effect[i] = effect[i];
+        trace.set[0].effect[i] = effect[i];
         candidate(effect[i], u[i]);
     }
-    assert_int_equal(dig_tell_apart(&t, trace), DIG_OK);
+    assert_int_equal(dig_tell_apart(&t, &trace), DIG_OK);
 }
 
 // Rms over the features of so much of the whole dig, in one dig's scatter.
@@ -96,17 +74,16 @@ TEST(what_differs_at_speed_alone_is_told_by_digging_faster)
     const double             u[]      = { 0.3, 0.0 };
     soil->along                       = 0.0;
     tell(3, 2, effect, u);
-    assert_int_equal(trace->tells, 1);
-    assert_false(trace->tell[0].in_air);
-    assert_non_null(strstr(trace->tell[0].how, "at twice the pace"));
+    assert_int_equal(trace.tells, 1);
+    assert_false(trace.tell[0].in_air);
+    assert_non_null(strstr(trace.tell[0].how, "at twice the pace"));
     double most = 0.0;
     for (size_t k = 0; k < MADE_TRAJECTORIES; k++) {
         most = fmax(most, of_the_whole(exp2(0.3) - 1.0, k));
     }
     // Over the size with the effect in it.
-    assert_close(trace->tell[0].sigmas * exp2(0.3) / most, 1.0, 0.1);
-    assert_close(trace->tell[0].repeats, fmax(ceil(9.0 / pow(trace->tell[0].sigmas, 2.0)), 1.0),
-                 0.0);
+    assert_close(trace.tell[0].sigmas * exp2(0.3) / most, 1.0, 0.1);
+    assert_close(trace.tell[0].repeats, fmax(ceil(9.0 / pow(trace.tell[0].sigmas, 2.0)), 1.0), 0.0);
 }
 
 TEST(what_grows_with_the_digs_is_told_by_later_ones)
@@ -114,7 +91,7 @@ TEST(what_grows_with_the_digs_is_told_by_later_ones)
     const enum dig_effect_id effect[] = { DIG_EFFECT_WEAR, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.02, 0.0 };
     tell(3, 2, effect, u);
-    assert_non_null(strstr(trace->tell[0].how, "after ten more digs"));
+    assert_non_null(strstr(trace.tell[0].how, "after ten more digs"));
 }
 
 // Adhesion of the made world shows in Fz alone.
@@ -123,10 +100,10 @@ TEST(what_is_not_measured_tells_nothing)
     const enum dig_effect_id effect[] = { DIG_EFFECT_ADHESION, DIG_EFFECT_COHESION };
     const double             u[]      = { 0.8, 0.0 };
     tell(3, 2, effect, u);
-    const double with_forces = trace->tell[0].sigmas;
+    const double with_forces = trace.tell[0].sigmas;
     assert_true(with_forces > 0.5);
     tell(1, 2, effect, u);
-    assert_true(trace->tell[0].sigmas < 0.5 * with_forces);
+    assert_true(trace.tell[0].sigmas < 0.5 * with_forces);
 }
 
 // In the made world the slope is felt along the real dig by 0.6 of what it is along the others.
@@ -136,38 +113,38 @@ TEST(what_differs_in_one_dig_is_told_by_that)
                                           DIG_EFFECT_ADHESION };
     const double             u[]      = { 0.8, 0.0, 0.0 };
     tell(3, 3, effect, u);
-    assert_int_equal(trace->tells, 3);
-    assert_int_equal(trace->tell[1].effect[0], DIG_EFFECT_GROUND_SLOPE);
-    assert_int_equal(trace->tell[1].effect[1], DIG_EFFECT_ADHESION);
+    assert_int_equal(trace.tells, 3);
+    assert_int_equal(trace.tell[1].effect[0], DIG_EFFECT_GROUND_SLOPE);
+    assert_int_equal(trace.tell[1].effect[1], DIG_EFFECT_ADHESION);
     for (size_t i = 0; i < 2; i++) {
-        assert_non_null(strstr(trace->tell[i].how, "a dig along simple"));
-        assert_null(strstr(trace->tell[i].how, "pace"));
+        assert_non_null(strstr(trace.tell[i].how, "a dig along simple"));
+        assert_null(strstr(trace.tell[i].how, "pace"));
     }
     // Neither of the others is there: nothing tells them apart, and that is said.
     char text[256];
-    assert_string_equal(trace->tell[2].how, "");
-    dig_tell_apart_say(&trace->tell[2], sizeof text, text);
+    assert_string_equal(trace.tell[2].how, "");
+    dig_tell_apart_say(&trace.tell[2], sizeof text, text);
     assert_string_equal(text, "cohesion and adhesion: nothing that was tried tells them apart");
-    dig_tell_apart_say(&trace->tell[0], sizeof text, text);
+    dig_tell_apart_say(&trace.tell[0], sizeof text, text);
     assert_non_null(strstr(text, "ground_slope and cohesion differ most by a dig along simple"));
-    dig_tell_apart_say(&trace->tell[0], 8, text);
+    dig_tell_apart_say(&trace.tell[0], 8, text);
     assert_string_equal(text, "ground_");
 }
 
 TEST(there_is_room_for_so_many_pairs)
 {
-    const struct dig_trace_work t = { .set = world.set, .search = search, .digs = DIGS };
-    memset(search, 0, sizeof *search);
-    memset(trace, 0, sizeof *trace);
-    trace->sets = 2;
+    const struct dig_trace_work t = { .set = world.set, .search = &search, .digs = DIGS };
+    memset(&search, 0, sizeof search);
+    memset(&trace, 0, sizeof trace);
+    trace.sets = 2;
     for (size_t s = 0; s < 2; s++) {
         for (int e = 0; e <= DIG_EFFECT_SENSOR_DELAY; e++) {
-            trace->set[s].effect[trace->set[s].effects++] = (enum dig_effect_id)e;
+            trace.set[s].effect[trace.set[s].effects++] = (enum dig_effect_id)e;
         }
     }
-    assert_int_equal(dig_tell_apart(&t, trace), DIG_OK);
-    assert_int_equal(trace->tells, DIG_TRACE_TELLS_MAX);
-    assert_string_equal(trace->tell[0].how, "");
+    assert_int_equal(dig_tell_apart(&t, &trace), DIG_OK);
+    assert_int_equal(trace.tells, DIG_TRACE_TELLS_MAX);
+    assert_string_equal(trace.tell[0].how, "");
 }
 
-TESTS_WITH(make, clean)
+TESTS_WITH(world_setup, world_teardown)

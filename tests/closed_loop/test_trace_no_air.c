@@ -17,23 +17,15 @@ static struct dig_machine_finding air;
 // The first digs of four with a layer, along two trajectories in turn, and both hypotheses fitted.
 static struct dig_trace_work work(const size_t digs)
 {
-    static const enum dig_effect_id    effect     = DIG_EFFECT_LAYERING;
-    static const bool                  take[DIGS] = { true, true, true, true };
-    static const struct dig_gravel     gravel     = { { 0.6, 0.55, 2500 } };
-    static const struct dig_hypothesis plain      = { .effects = 0 };
-    static const struct dig_hypothesis layer = { .effects = 1, .effect = { DIG_EFFECT_LAYERING } };
+    static const enum dig_effect_id    effect = DIG_EFFECT_LAYERING;
+    static const struct dig_gravel     gravel = { { 0.6, 0.55, 2500 } };
+    static const struct dig_hypothesis plain  = { .effects = 0 };
+    static const struct dig_hypothesis layer  = { .effects = 1, .effect = { DIG_EFFECT_LAYERING } };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     const double                       magnitude                      = 0.8;
     uint64_t                           seed                           = 61;
-    double                             place[DIG_AXES];
-    for (size_t i = 0; i < digs; i++) {
-        measured[i]       = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &effect,
-                                     &magnitude, &seed);
-        measured[i].order = i;
-    }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, digs, measured, take, place, &batch), DIG_OK);
+    dig_in_turn(digs, &gravel, 1, &effect, &magnitude, &seed, measured);
+    batch_digs(digs, measured, &gravel, &batch);
     memset(&search, 0, sizeof search);
     search.significant = true;
     dig_hypothesis_fit(&batch, &plain, middle, DIG_FIT_THOROUGH, &search.plain);

@@ -17,18 +17,10 @@ static const struct dig_trace_settings settings = { .false_alarm = 0.01 };
 // Six digs, searched as they are: what the soil's side of a verdict is made of.
 static struct dig_trace_work search(const enum dig_effect_id effect, const double magnitude)
 {
-    static const bool       take[DIGS] = { true, true, true, true, true, true };
-    const struct dig_gravel gravel     = { { 0.6, 0.55, 2500 } };
-    uint64_t                seed       = 51;
-    double                  place[DIG_AXES];
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i]       = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &effect,
-                                     &magnitude, &seed);
-        measured[i].order = i;
-    }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, &batch), DIG_OK);
+    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+    uint64_t                seed   = 51;
+    dig_in_turn(DIGS, &gravel, 1, &effect, &magnitude, &seed, measured);
+    batch_digs(DIGS, measured, &gravel, &batch);
     dig_search_run(&batch, settings.false_alarm, DRAWS, seed, &found);
     return (struct dig_trace_work){ .set      = world.set,
                                     .surface  = world.surface,

@@ -1,7 +1,6 @@
 #include "closed_loop/search/unlisted.h"
 
-#include "tests/made_campaign.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/world_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -9,30 +8,9 @@
 enum { DIGS = 7 };
 
 static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
-static struct made_world         world;
-static struct dig_soil          *soil;
-static struct dig_whitened_digs *batch;
-static struct dig_measured      *measured;
+static struct dig_whitened_digs  batch;
+static struct dig_measured       measured[DIGS];
 static struct dig_model_unlisted share;
-
-static int make(void **state)
-{
-    (void)state;
-    world    = made_world(5);
-    measured = calloc(DIGS, sizeof *measured);
-    batch    = malloc(sizeof *batch);
-    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    free(batch);
-    free(measured);
-    made_world_finish(&world);
-    return 0;
-}
 
 // Six simple digs with a dip of these magnitudes, and one real one with the first's; corrected
 // beside the gravel that they are of. Returns the root mean square of the share along a trajectory.
@@ -40,23 +18,20 @@ static double correct(const double magnitude[2], const enum made_trajectory alon
 {
     const enum dig_effect_id dip  = DIG_EFFECT_UNLISTED;
     uint64_t                 seed = 11;
-    bool                     take[DIGS];
     double                   place[DIG_AXES];
     for (size_t i = 0; i < DIGS; i++) {
         const bool simple = i + 1 < DIGS;
         measured[i]       = made_dig(&gravel, simple ? MADE_SIMPLE_A : MADE_ACTUAL, 1, &dip,
                                      &magnitude[simple ? i % 2 : 0], &seed);
-        take[i]           = true;
     }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, &batch);
     struct dig_fitted plain = { .hypothesis = { .effects = 0 } };
+    dig_response_surface_place(world.surface, &gravel, place);
     memcpy(plain.number, place, sizeof place);
-    for (size_t g = 0; g < batch->groups; g++) {
+    for (size_t g = 0; g < batch.groups; g++) {
         plain.noise[g] = 0.1;
     }
-    dig_unlisted_correct(batch, &plain, &share);
+    dig_unlisted_correct(&batch, &plain, &share);
     double sum = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         sum += pow((double)share.share[along][DIG_CHANNEL_MY_Nm][k], 2.0) / DIG_CURVE_POINTS;
@@ -87,4 +62,4 @@ TEST(digs_that_differ_from_each_other_are_left_alone)
     assert_close(correct(against, MADE_ACTUAL), 0.0, 1e-9);
 }
 
-TESTS_WITH(make, clean)
+TESTS_WITH(world_setup, world_teardown)

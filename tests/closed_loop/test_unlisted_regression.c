@@ -3,39 +3,17 @@
 #include "closed_loop/search/unlisted_regression.h"
 
 #include "core/units.h"
-#include "tests/made_campaign.h"
+#include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 8 };
 
-static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
-static struct made_world         world;
-static struct dig_soil          *soil;
-static struct dig_whitened_digs *batch;
-static struct dig_measured      *measured;
-
-static int make(void **state)
-{
-    (void)state;
-    world    = made_world(5);
-    measured = calloc(DIGS, sizeof *measured);
-    batch    = malloc(sizeof *batch);
-    return dig_soil_create(world.surface, world.effects, world.scatter, &soil);
-}
-
-static int clean(void **state)
-{
-    (void)state;
-    free(soil);
-    free(batch);
-    free(measured);
-    made_world_finish(&world);
-    return 0;
-}
+static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_whitened_digs batch;
+static struct dig_measured      measured[DIGS];
 
 // How the digs of a campaign differ.
 struct differ {
@@ -70,18 +48,11 @@ static void regress(struct dig_regressed *const means, struct dig_regressed *con
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    bool                               take[DIGS];
-    double                             place[DIG_AXES];
     struct dig_fitted                  plain;
-    for (size_t i = 0; i < DIGS; i++) {
-        take[i] = true;
-    }
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
-    dig_hypothesis_fit(batch, &none, middle, DIG_FIT_THOROUGH, &plain);
-    *means = dig_regress(batch, &plain, false);
-    *digs  = dig_regress(batch, &plain, true);
+    batch_digs(DIGS, measured, &gravel, &batch);
+    dig_hypothesis_fit(&batch, &none, middle, DIG_FIT_THOROUGH, &plain);
+    *means = dig_regress(&batch, &plain, false);
+    *digs  = dig_regress(&batch, &plain, true);
 }
 
 static bool has(const struct dig_regressed *const r, const enum dig_basis basis)
@@ -213,4 +184,4 @@ TEST(plain_digs_depend_on_nothing_more_often_than_before)
     }
 }
 
-TESTS_WITH(make, clean)
+TESTS_WITH(world_setup, world_teardown)

@@ -11,20 +11,12 @@ enum { DIGS = 60 };
 
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
-static struct dig_whitened_digs *batch_of(struct dig_measured    measured[DIGS],
-                                          enum dig_status *const status)
+static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS])
 {
-    uint64_t seed = 3;
-    bool     take[DIGS];
-    double   place[DIG_AXES];
-    for (size_t i = 0; i < DIGS; i++) {
-        measured[i] =
-            made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, 0, NULL, NULL, &seed);
-        take[i] = true;
-    }
-    struct dig_whitened_digs *batch = malloc(sizeof *batch);
-    dig_response_surface_place(world.surface, &gravel, place);
-    *status = dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch);
+    uint64_t                        seed  = 3;
+    struct dig_whitened_digs *const batch = malloc(sizeof *batch);
+    dig_in_turn(DIGS, &gravel, 0, NULL, NULL, &seed, measured);
+    batch_digs(DIGS, measured, &gravel, batch);
     return batch;
 }
 
@@ -32,9 +24,7 @@ static struct dig_whitened_digs *batch_of(struct dig_measured    measured[DIGS],
 TEST(digs_of_one_gravel_scatter_by_one)
 {
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
-    enum dig_status           status;
-    struct dig_whitened_digs *batch = batch_of(measured, &status);
-    assert_int_equal(status, DIG_OK);
+    struct dig_whitened_digs *batch    = batch_of(measured);
     assert_int_equal(batch->groups, 2);
     for (size_t g = 0; g < batch->groups; g++) {
         const struct dig_whitened_digs_group *const group = &batch->group[g];
@@ -51,21 +41,15 @@ TEST(digs_of_one_gravel_scatter_by_one)
 TEST(what_the_machine_adds_is_taken_off)
 {
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
-    enum dig_status           status;
-    struct dig_whitened_digs *plain = batch_of(measured, &status);
+    struct dig_whitened_digs *plain    = batch_of(measured);
     for (size_t i = 0; i < DIGS; i++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             measured[i].value[0][k] += 1e-4;
             measured[i].machine[0][k] += 1e-4;
         }
     }
-    bool take[DIGS];
-    memset(take, true, sizeof take);
-    double                    place[DIG_AXES];
     struct dig_whitened_digs *off = malloc(sizeof *off);
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, off),
-                     DIG_OK);
+    batch_digs(DIGS, measured, &gravel, off);
     for (size_t k = 0; k < DIG_FEATURES; k++) {
         assert_close(off->group[0].mean[k], plain->group[0].mean[k], 1e-3);
     }
@@ -81,10 +65,9 @@ TEST(what_approaches_add_is_shared)
     static const struct dig_hypothesis plain                         = { .effects = 0 };
     const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_measured               *measured = calloc(DIGS, sizeof *measured);
-    enum dig_status                    status;
     struct dig_fitted                  without;
     struct dig_fitted                  with;
-    struct dig_whitened_digs          *batch = batch_of(measured, &status);
+    struct dig_whitened_digs          *batch = batch_of(measured);
     dig_hypothesis_fit(batch, &plain, start, DIG_FIT_BARE, &without);
     assert_close(batch->group[0].added_noise, 0.0, 0.0);
     for (size_t i = 0; i < 4; i += 2) {
@@ -93,12 +76,7 @@ TEST(what_approaches_add_is_shared)
             measured[i].added.error[0][k] = 0.3;
         }
     }
-    bool take[DIGS];
-    memset(take, true, sizeof take);
-    double place[DIG_AXES];
-    dig_response_surface_place(world.surface, &gravel, place);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, place, batch), DIG_OK);
+    batch_digs(DIGS, measured, &gravel, batch);
     assert_close(batch->group[0].added_noise, 0.5 / 225.0, 1e-12);
     assert_close(batch->group[0].added_error[3], 0.3 / 15.0, 1e-12);
     assert_close(batch->group[0].added_error[DIG_FEATURE_BINS], 0.0, 0.0);
@@ -116,8 +94,7 @@ TEST(what_approaches_add_is_shared)
 TEST(digs_and_models_shrink_alike)
 {
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
-    enum dig_status           status;
-    struct dig_whitened_digs *batch = batch_of(measured, &status);
+    struct dig_whitened_digs *batch    = batch_of(measured);
     double                    feature[DIG_FEATURES];
     double                    model[2][DIG_FEATURES];
     double                    y[2][DIG_FEATURES];
@@ -145,14 +122,12 @@ TEST(digs_and_models_shrink_alike)
 TEST(only_what_all_digs_have_is_compared)
 {
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
-    enum dig_status           status;
-    struct dig_whitened_digs *batch = batch_of(measured, &status);
+    struct dig_whitened_digs *batch    = batch_of(measured);
     bool                      take[DIGS];
     memset(take, true, sizeof take);
     measured[0].last        = 0.75;
     measured[2].measured[1] = false;
-    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, batch),
-                     DIG_OK);
+    batch_digs(DIGS, measured, NULL, batch);
     assert_int_equal(batch->group[0].features, 2 * 7);
     assert_int_equal(batch->group[1].features, DIG_FEATURES);
     measured[0].last = 0.1;
@@ -188,10 +163,9 @@ static double integrated(const double known, const double numbers, const double 
 TEST(a_size_known_from_few_beds_is_integrated_out)
 {
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
-    enum dig_status           status;
-    struct dig_whitened_digs *batch   = batch_of(measured, &status);
-    struct dig_scatter        scatter = *world.scatter;
-    batch->scatter                    = &scatter;
+    struct dig_whitened_digs *batch    = batch_of(measured);
+    struct dig_scatter        scatter  = *world.scatter;
+    batch->scatter                     = &scatter;
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
         scatter.freedom[t] = 3.0;
     }
