@@ -36,13 +36,14 @@ a Modbus answer that lies of its length is none|firmware_host/bus/modbus_tcp.c|s
 an LCM channel ends within its datagram|files/lcm/lcm_datagram.c|s/memchr(channel, .*/memchr(channel, 0, 65000);/|files/test_lcm_datagram
 a part of an LCM message is none|files/lcm/lcm_datagram.c|s/memcmp(bytes, short_message, sizeof short_message)/memcmp(bytes, short_message, 3)/|files/test_lcm_datagram
 an LCM message longer than it says is none|files/lcm/lcm_layout.c|s/return at == size;/return true;/|files/test_lcm_layout
+a box of more grains than memory holds is refused|offline_dem/dig/packing.c|s/!(total <= MOST) .. (double)n > MOST/false/|offline_dem/test_packing
 a number of an LCM message is within it|files/lcm/lcm_layout.c|s/number >= 0 \&\& (size_t)number <= INT32_MAX . 8/true/|files/test_lcm_layout
 '
 
 cp -a Makefile core files messages tables estimator firmware_host offline_dem closed_loop tools scripts config "$work/"
 mkdir "$work/tests" "$work/build"
 cp -a tests/*.[ch] "$work/tests/"
-for folder in core files tables firmware_host closed_loop digtable; do cp -a "tests/$folder" "$work/tests/"; done
+for folder in core files tables firmware_host offline_dem closed_loop digtable; do cp -a "tests/$folder" "$work/tests/"; done
 ln -s "$PWD/tests/data" "$work/tests/data"
 cp -a build/*.a build/messages build/core build/files build/tables build/estimator build/firmware_host build/offline_dem \
     build/closed_loop "$work/build/"

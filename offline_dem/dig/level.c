@@ -13,6 +13,7 @@
 #define PLATE_mps   0.05 // m/s, quasi-static: slow beside the bed's own waves
 #define DEEPEST     0.5  // radii the plate may cut into a grain
 #define CHECK_STEPS 4    // steps between two checks of the plate's load
+#define MOST_CELLS  2147483648.0
 
 static double radius(const struct dig_world *const world, const size_t i)
 {
@@ -113,8 +114,13 @@ static enum dig_status make_height_map(const struct dig_scene *const scene,
     const struct dig_box *const box = &scene->box;
     const double span[2]            = { box->x_max_m - box->x_min_m, box->y_max_m - box->y_min_m };
     *height_map = (struct height_map){ .low_m = { box->x_min_m, box->y_min_m }, .edge_m = edge_m };
+    const double count[2] = { fmax(1.0, floor(span[0] / edge_m)),
+                              fmax(1.0, floor(span[1] / edge_m)) };
+    if (!(count[0] * count[1] <= MOST_CELLS)) {
+        return DIG_ENOMEM;
+    }
     for (int a = 0; a < 2; a++) {
-        height_map->count[a] = (size_t)fmax(1.0, floor(span[a] / edge_m));
+        height_map->count[a] = (size_t)count[a];
         // Cells end at the walls: the remainder is split between both sides.
         height_map->low_m[a] += 0.5 * (span[a] - (double)height_map->count[a] * edge_m);
     }
@@ -189,11 +195,14 @@ enum dig_status dig_level_rake(const struct dig_scene *const scene, struct dig_w
     if (here != DIG_OK) {
         return here;
     }
-    const struct dig_grains *const g          = &world->grains;
-    unsigned char *const           above      = find_above_ground(scene, world);
-    const bool                     clumps     = world->bodies != NULL && world->bodies->clumps > 0;
-    double                         edge_m     = 0.0;
-    struct height_map              height_map = { .top_m = NULL };
+    const struct dig_grains *const g = &world->grains;
+    if (g->n == 0) {
+        return DIG_OK;
+    }
+    unsigned char *const above      = find_above_ground(scene, world);
+    const bool           clumps     = world->bodies != NULL && world->bodies->clumps > 0;
+    double               edge_m     = 0.0;
+    struct height_map    height_map = { .top_m = NULL };
     for (size_t k = 0; k < g->types; k++) {
         edge_m = fmax(edge_m, 2.0 * g->type[k].radius_m);
     }

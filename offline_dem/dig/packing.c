@@ -2,6 +2,7 @@
 
 #include "core/ground.h"
 #include "core/units.h"
+#include "offline_dem/dig/setup.h"
 #include "offline_dem/law/random.h"
 #include "offline_dem/law/rigid.h"
 #include "offline_dem/shapes/clump.h"
@@ -12,6 +13,7 @@
 #include <stdlib.h>
 
 #define NO_SPHERE UINT32_MAX
+#define MOST      2147483648.0 // spheres, and cells: what NO_SPHERE can tell, and memory may hold
 
 #define ATTEMPTS 100000 // for one body, before the column counts as full
 #define GROWTH   1.1    // factor by which a full column grows
@@ -55,14 +57,13 @@ static void plan_size_classes(struct pouring *const p)
     const size_t          sizes = scene->bed.sizes;
     p->size_classes             = sizes > 0 ? sizes : 1;
     for (size_t i = 0; i < p->size_classes; i++) {
-        const struct dig_size   size = sizes > 0 ? scene->bed.size[i] : one;
-        const double            d_m  = size.diameter_m;
-        const double            m3   = DIG_PI / 6.0 * d_m * d_m * d_m;
-        const struct size_class made = {
-            .bodies = (size_t)floor(scene->packing.fill_factor * box_m3 * size.mass_fraction / m3),
-            .diameter_m = d_m,
-        };
-        size_t k = i;
+        const struct dig_size size = sizes > 0 ? scene->bed.size[i] : one;
+        const double          d_m  = size.diameter_m;
+        const double          m3   = DIG_PI / 6.0 * d_m * d_m * d_m;
+        const double bodies = floor(scene->packing.fill_factor * box_m3 * size.mass_fraction / m3);
+        // More than MOST are refused, whatever their number.
+        const struct size_class made = { (size_t)fmin(bodies, 2.0 * MOST), d_m };
+        size_t                  k    = i;
         for (; k > 0 && p->size_class[k - 1].diameter_m < d_m; k--) {
             p->size_class[k] = p->size_class[k - 1];
         }
@@ -99,7 +100,8 @@ static enum dig_status make_cells(struct pouring *const p, const size_t n)
 {
     struct cells *const c     = &p->cells;
     double              most  = 0.5;
-    size_t              total = 1;
+    double              total = 1.0;
+    double              count[3];
     for (size_t k = 0; k < p->shape.spheres; k++) {
         most = k == 0 ? p->shape.radius[0] : fmax(most, p->shape.radius[k]);
     }
@@ -110,15 +112,21 @@ static enum dig_status make_cells(struct pouring *const p, const size_t n)
         }
         const double span_m = (a == 2 ? p->tallest_m : p->high_m[a]) - p->low_m[a];
         c->low_m[a]         = p->low_m[a];
-        c->count[a]         = (ptrdiff_t)(span_m / c->edge_m) + 1;
-        total *= (size_t)c->count[a];
+        count[a]            = floor(span_m / c->edge_m) + 1.0;
+        total *= count[a];
     }
-    c->first = malloc(total * sizeof *c->first);
+    if (!(total <= MOST) || (double)n > MOST) {
+        return DIG_EINVAL;
+    }
+    for (int a = 0; a < 3; a++) {
+        c->count[a] = (ptrdiff_t)count[a];
+    }
+    c->first = malloc((size_t)total * sizeof *c->first);
     c->next  = malloc((n + 1) * sizeof *c->next);
     if (c->first == NULL || c->next == NULL) {
         return DIG_ENOMEM;
     }
-    for (size_t i = 0; i < total; i++) {
+    for (size_t i = 0; i < (size_t)total; i++) {
         c->first[i] = NO_SPHERE;
     }
     return DIG_OK;
@@ -282,20 +290,20 @@ static enum dig_status insert(struct pouring *const p, const uint64_t seed,
 }
 
 enum dig_status dig_packing_insert(const struct dig_scene *const scene, const uint64_t seed,
-                                   struct dig_bed *const bed)
+                                   struct dig_bed *const bed, struct dig_error *const error)
 {
     struct pouring  p      = { .scene = scene, .obstacles = dig_obstacles_make(scene) };
     enum dig_status status = dig_clump_shape_make(&scene->bed.clump, &p.shape);
     if (status != DIG_OK) {
-        return status;
+        return dig_error_set(error, status, "bed.clump: no volume, expected some");
     }
     p.spheres = p.shape.spheres > 0 ? p.shape.spheres : 1;
     plan_size_classes(&p);
     const size_t   n    = count_spheres(&p);
     struct dig_bed made = { 0 };
-    status              = dig_bed_create(n, false, p.shape.spheres > 0, &made);
+    status              = make_cells(&p, n);
     if (status == DIG_OK) {
-        status = make_cells(&p, n);
+        status = dig_bed_create(n, false, p.shape.spheres > 0, &made);
     }
     if (status == DIG_OK) {
         status = insert(&p, seed, &made);
@@ -304,7 +312,13 @@ enum dig_status dig_packing_insert(const struct dig_scene *const scene, const ui
     free(p.cells.next);
     if (status != DIG_OK) {
         dig_bed_finish(&made);
-        return status;
+        return status != DIG_EINVAL
+                   ? dig_setup_explain(status, error)
+                   : dig_error_set(
+                         error, status,
+                         "box_m: room for more than %.0f grains of material.diameter_m or "
+                         "bed.sizes by packing, expected less",
+                         MOST);
     }
     *bed = made;
     return DIG_OK;

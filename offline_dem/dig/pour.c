@@ -184,9 +184,9 @@ enum dig_status dig_bed_pour(const struct dig_stepper *const stepper,
         return status;
     }
     struct dig_bed poured = { 0 };
-    status                = dig_packing_insert(scene, seed, &poured);
+    status                = dig_packing_insert(scene, seed, &poured, error);
     if (status != DIG_OK) {
-        return dig_setup_explain(status, error);
+        return status;
     }
     struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
     struct pour                 p   = { .scene = scene, .gravel = gravel, .ode = ode };

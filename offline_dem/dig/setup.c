@@ -36,6 +36,9 @@ enum dig_status dig_setup_check_phases(const struct dig_trajectory *const trajec
                                trajectory->phases, DIG_PHASES_MAX);
 }
 
+// Counts of steps stay far below what an integer holds.
+#define LEAST_STEP_s 1e-12
+
 // Mass of each grain, or of its clump, in the bed's order.
 static double *body_masses(const struct dig_grain_types *const types, const uint8_t type_of[],
                            const size_t n)
@@ -92,6 +95,12 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     } else {
         status = dig_grain_types_find(scene, gravel, bed, &shape, &found, type_of, error);
     }
+    const double dt_s = dig_grain_types_time_step_s(scene, gravel, &found);
+    if (status == DIG_OK && !(dt_s >= LEAST_STEP_s)) {
+        status =
+            dig_error_set(error, DIG_EINVAL, "time_step_s: %g%s, expected at least %g", dt_s,
+                          scene->time_step_s > 0.0 ? "" : " by material and bed", LEAST_STEP_s);
+    }
     if (status == DIG_OK && type_of != NULL) {
         status = make_grains(scene, bed, &shape, fall_mps, &found, type_of, &grains, &bodies);
         if (status == DIG_EINVAL) {
@@ -106,7 +115,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
         return status;
     }
     struct dig_world made = {
-        .dt_s         = dig_grain_types_time_step_s(scene, gravel, &found),
+        .dt_s         = dt_s,
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
         .bodies       = bodies,
@@ -197,9 +206,12 @@ enum dig_status dig_setup_explain(const enum dig_status status, struct dig_error
                              "packing.solid_fraction: the grains do not fit, expected less");
     case DIG_ESTALE: return dig_error_set(error, status, "stopped before its end");
     case DIG_OK:
+    case DIG_ENOMEM:
+        return dig_error_set(error, status,
+                             "out of memory, expected a smaller box_m or a larger "
+                             "material.diameter_m");
     case DIG_ENOMATCH:
     case DIG_ESCHEMA:
-    case DIG_ENOMEM:
     case DIG_EIO: break;
     }
     return dig_error_set(error, status, "%s", dig_status_str(status));

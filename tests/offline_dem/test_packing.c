@@ -12,7 +12,7 @@ static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 static struct dig_bed insert(const struct dig_scene *const scene, const uint64_t seed)
 {
     struct dig_bed bed;
-    assert_int_equal(dig_packing_insert(scene, seed, &bed), DIG_OK);
+    assert_int_equal(dig_packing_insert(scene, seed, &bed, NULL), DIG_OK);
     return bed;
 }
 
@@ -67,11 +67,40 @@ TEST(what_cannot_fit_is_refused_and_nothing_written)
     struct dig_bed   bed   = { .grains = 77 };
     struct dig_scene scene = dem_small_scene();
     scene.box.y_max_m      = scene.box.y_min_m + 1.9 * GRAIN_m;
-    assert_int_equal(dig_packing_insert(&scene, 1, &bed), DIG_EUNREACHABLE);
+    assert_int_equal(dig_packing_insert(&scene, 1, &bed, NULL), DIG_EUNREACHABLE);
     scene                        = dem_small_scene();
     scene.packing.solid_fraction = 0.9; // 0.45 once the column is twice as tall
-    assert_int_equal(dig_packing_insert(&scene, 1, &bed), DIG_EUNREACHABLE);
+    assert_int_equal(dig_packing_insert(&scene, 1, &bed, NULL), DIG_EUNREACHABLE);
     assert_int_equal(bed.grains, 77);
+}
+
+TEST(more_grains_or_cells_than_memory_holds_are_refused)
+{
+    // The last two make a product of cells, or of their bytes, that a size_t wraps to little.
+    static const struct {
+        double x_m, y_m, diameter_m, solid_fraction, fill_factor;
+    } huge[] = {
+        { 1e25, 0.6, 0.06, 0.3, 0.7 },
+        { 1e300, 1e300, 0.06, 0.3, 0.7 },
+        { 1210.7919818456367, 1210.7919818456367, 0.001, 1.6223802512809142e-18,
+          1.9643652339260583e-15 },
+        { 2097152.0, 2097152.0, 0.001, 0.3, 0.3 },
+    };
+    for (size_t i = 0; i < sizeof huge / sizeof huge[0]; i++) {
+        struct dig_scene scene       = dem_small_scene();
+        struct dig_bed   bed         = { .grains = 77 };
+        struct dig_error error       = { "" };
+        scene.box.x_max_m            = huge[i].x_m;
+        scene.box.y_min_m            = -0.5 * huge[i].y_m;
+        scene.box.y_max_m            = 0.5 * huge[i].y_m;
+        scene.material.diameter_m    = huge[i].diameter_m;
+        scene.packing.solid_fraction = huge[i].solid_fraction;
+        scene.packing.fill_factor    = huge[i].fill_factor;
+        assert_int_equal(dig_packing_insert(&scene, 1, &bed, &error), DIG_EINVAL);
+        assert_non_null(strstr(error.text, "box_m"));
+        assert_non_null(strstr(error.text, "material.diameter_m"));
+        assert_int_equal(bed.grains, 77);
+    }
 }
 
 TEST(a_poured_bed_is_level_and_lies_on_its_floor)

@@ -76,7 +76,7 @@ TEST(three_sizes_are_poured_by_mass)
     scene.bed.size[1]      = (struct dig_size){ 0.0075, 0.4 };
     scene.bed.size[2]      = (struct dig_size){ 0.010, 0.3 };
     struct dig_bed poured  = { 0 };
-    assert_int_equal(dig_packing_insert(&scene, 1, &poured), DIG_OK);
+    assert_int_equal(dig_packing_insert(&scene, 1, &poured, NULL), DIG_OK);
     assert_close(deepest_overlap(&poured), 0.0, 0.0);
     const double all =
         mass_of(&poured, 0.003) + mass_of(&poured, 0.00375) + mass_of(&poured, 0.005);
@@ -265,7 +265,7 @@ TEST(what_cannot_fit_is_refused_and_nothing_written)
     scene.bed.obstacle[0]        = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
                                                           .centre_m = { 0.03, 0.0, 0.1 },
                                                           .size_m   = { 0.05, 0.04, 0.4 } };
-    assert_int_equal(dig_packing_insert(&scene, 1, &bed), DIG_EUNREACHABLE);
+    assert_int_equal(dig_packing_insert(&scene, 1, &bed, NULL), DIG_EUNREACHABLE);
     assert_int_equal(bed.grains, 77);
 }
 

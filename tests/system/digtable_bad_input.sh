@@ -111,8 +111,16 @@ changed 's/^packings: 2/packings: 2\nattack_deg: [0, 45]/' $grid g.yaml
 refused "an attack that starts in the bed" 'grid, depth 1, attack 45 deg: trajectory scrape.*: the bucket starts .* m in the ground, expected it clear' generate "$work/low.yaml" "$work/g.yaml" -o "$out"
 sed -i 's/3.2,0/1,45/; s/1,0$/1,45/' "$work/curves.csv"
 refused "import of a dig that cannot begin" 'curves.csv:2: trajectory scrape, depth 1, attack 45 deg: the bucket starts .* m in the ground' import "$work/curves.csv" --map "$work/map.yaml" -o "$out"
-refused "a dig that leaves the box" 'trajectory scrape: at .* outside box_m.z' dig "$work/s.yaml" "${dig[@]}" --depth 2.5 -o "$out"
+refused "a dig that leaves the box" 's.yaml: trajectory scrape: at .* outside box_m.z' dig "$work/s.yaml" "${dig[@]}" --depth 2.5 -o "$out"
 refused "a depth out of range" '[-]-depth 9: expected 0.2 to 3' dig $scene "${dig[@]}" --depth 9 -o "$out"
+
+# What no memory holds, no step resolves and no row records.
+changed 's/x: .0, 1.0./x: [0, 1.0e+25]/' $scene huge.yaml
+refused "a box without bounds" 'huge.yaml: box_m: room for more than 2147483648 grains of material.diameter_m' dig "$work/huge.yaml" "${dig[@]}" -o "$out"
+changed 's/^time_step_s: .*/time_step_s: 1.0e-300/' $scene s.yaml
+refused "a step of nothing" 's.yaml: time_step_s: 1e-300, expected at least 1e-12' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+changed 's/duration_s: [0-9.]*/duration_s: 1.0e-9/' $scene s.yaml
+refused "a dig without a row" 's.yaml: trajectories: scrape gives 0 rows of output_s, expected 2 or more' dig "$work/s.yaml" "${dig[@]}" -o "$out"
 
 # Beds.
 printf 'x_m,y_m,z_m\n0,0,0\n' >"$work/bed.csv"
@@ -130,6 +138,10 @@ for engine in kernel ode; do
     refused "a grain beside the box ($engine)" 'bed: grain 1 at .5.5, 0, 0.03. m is 4.53 m behind a wall of box_m' \
         dig $scene "${dig[@]}" --bed "$work/bed.csv" --engine $engine -o "$out"
 done
+printf 'x_m,y_m,z_m,radius_m\n0.8,0,0.03,0.03\n' >"$work/bed.csv"
+changed 's/x: .0, 1.0./x: [0, 1.0e+25]/; $a bed: {earlier_digs: 1}' $scene huge.yaml
+digtable dig "$work/huge.yaml" "${dig[@]}" --bed "$work/bed.csv" -o "$out"
+check "ground that no memory holds is not raked" eval 'is $code 1 && grep -q "huge.yaml: out of memory, expected a smaller box_m" $work/err && [ ! -e "$out" ]'
 printf 'x_m,y_m,z_m,radius_m\n0.24,0,0.32,0.03\n' >"$work/bed.csv"
 refused "a bucket that starts in the bed" 'start_pin_m: the bucket starts in the bed, at the grain at .0.24, 0, 0.32. m' \
     dig $scene "${dig[@]}" --bed "$work/bed.csv" -o "$out"

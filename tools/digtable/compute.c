@@ -43,6 +43,17 @@ static int report_dig(void *const context, const double done_s, const double tot
     return *w->stop == 0;
 }
 
+// Names the scene in what pouring or digging refused; a disk and a device name themselves.
+static enum dig_status name_scene(const char *const path, const enum dig_status status,
+                                  struct dig_error *const error)
+{
+    if (status == DIG_OK || status == DIG_EIO || status == DIG_ESTALE) {
+        return status;
+    }
+    const struct dig_error found = *error;
+    return dig_error_set(error, status, "%s: %s", path, found.text);
+}
+
 static enum dig_status get_bed(const struct dig_arguments *const a,
                                const struct dig_scene *const     scene,
                                const struct dig_gravel *const gravel, struct dig_bed *const bed,
@@ -63,8 +74,9 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
                                          a->stop };
     const struct dig_progress  progress = { report_dig, &watch };
     const struct dig_engine    engine   = dig_cli_engine(a);
-    const enum dig_status      status =
-        engine.pour(&engine.stepper, scene, gravel, a->seed, &progress, bed, error);
+    const enum dig_status      status   = name_scene(
+               a->positional[0],
+               engine.pour(&engine.stepper, scene, gravel, a->seed, &progress, bed, error), error);
     if (status == DIG_OK && watch.line.tty) {
         dig_progress_end(&watch.line, true);
     }
@@ -88,6 +100,14 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
     if (status == DIG_OK) {
         status = engine.dig(&engine.stepper, scene, gravel, bed, trajectory, a->vtk, &progress,
                             &recording, error);
+        // As few as a table refuses.
+        if (status == DIG_OK && recording.rows < 2) {
+            status =
+                dig_error_set(error, DIG_EINVAL,
+                              "trajectories: %s gives %zu rows of output_s, expected 2 or more",
+                              trajectory->name, recording.rows);
+        }
+        status = name_scene(a->positional[0], status, error);
     }
     if (status == DIG_OK) {
         status = dig_recording_write(a->output, &recording, error);
@@ -113,6 +133,7 @@ static enum dig_status approach(const struct dig_scene *const     scene,
     if (status == DIG_OK && !dig_approach_is_plain(&a->approach)) {
         status = dig_input_checks_path(scene, &dug, error);
     }
+    status = name_scene(a->positional[0], status, error);
     if (status == DIG_OK) {
         *made = dug;
     }
