@@ -2,6 +2,7 @@
 
 #include "core/did_you_mean.h"
 #include "core/help.h"
+#include "core/streams.h"
 #include "core/text.h"
 
 #include <assert.h>
@@ -146,11 +147,11 @@ const struct dig_command *dig_options_read(const struct dig_program *const progr
          (found = getopt_long(argc - skipped, argv + skipped, letters, known, NULL)) != -1;) {
         if (found == 'h') {
             dig_help_print(program, command, stdout);
-            exit(EXIT_SUCCESS);
+            exit(dig_streams_end(program->self.name, EXIT_SUCCESS));
         }
         if (found == VERSION) {
             (void)printf("%s %s\n", program->self.name, DIG_VERSION);
-            exit(EXIT_SUCCESS);
+            exit(dig_streams_end(program->self.name, EXIT_SUCCESS));
         }
         if (found == '?' || found == ':') {
             refuse(program, command, found, argv[optind - 1 + skipped], error);

@@ -1,6 +1,7 @@
 // digsightd: reads a machine's bus, identifies the gravel, publishes what it will resist with.
 
 #include "core/command_line.h"
+#include "core/streams.h"
 #include "core/text.h"
 #include "firmware_host/daemon.h"
 
@@ -93,6 +94,7 @@ int main(const int argc, char *argv[])
 {
     struct dig_error error = { "" };
     struct options   o     = { .config = NULL };
+    dig_streams_begin();
     if (dig_options_read(&program, argc, argv, &o, &error) == NULL) {
         return bad_usage(error.text);
     }
@@ -123,5 +125,5 @@ int main(const int argc, char *argv[])
         say(error.text);
         return EXIT_FAILED;
     }
-    return EXIT_DONE;
+    return dig_streams_end("digsightd", EXIT_DONE);
 }

@@ -1,6 +1,7 @@
 // digloop: which gravel resists like these recordings, what that gravel will resist with, and what
 // the table lacks.
 
+#include "core/streams.h"
 #include "core/table_step.h"
 #include "core/text.h"
 #include "tables/load.h"
@@ -66,6 +67,7 @@ int main(const int argc, char *argv[])
 {
     struct digloop_options options = { .command = "" };
     struct dig_error       error   = { "" };
+    dig_streams_begin();
     if (digloop_parse(argc, argv, &options, &error) != DIG_OK) {
         (void)fprintf(stderr, "digloop: %s\nTry digloop --help.\n", error.text);
         return 2;
@@ -88,5 +90,7 @@ int main(const int argc, char *argv[])
         (void)fprintf(stderr, "digloop: %s\n", error.text);
     }
     const bool input = status == DIG_EINVAL || status == DIG_ESCHEMA || status == DIG_ENOMATCH;
-    return status == DIG_OK && !wrong ? EXIT_SUCCESS : input || wrong ? 2 : EXIT_FAILURE;
+    return dig_streams_end("digloop", status == DIG_OK && !wrong ? EXIT_SUCCESS
+                                      : input || wrong           ? 2
+                                                                 : EXIT_FAILURE);
 }

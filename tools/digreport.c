@@ -1,6 +1,7 @@
 // digreport: reports a run of the daemon, or a shift, from LCM logs.
 
 #include "closed_loop/report/report.h"
+#include "core/streams.h"
 #include "estimator/wrench/correction.h"
 #include "files/machine_yaml.h"
 #include "files/model_json.h"
@@ -179,14 +180,16 @@ int main(const int argc, char *argv[])
 {
     struct digreport_options options = { .logs = 0 };
     struct dig_error         error   = { "" };
-    enum dig_status          status  = digreport_parse(argc, argv, &options, &error);
+    dig_streams_begin();
+    enum dig_status status = digreport_parse(argc, argv, &options, &error);
     if (status == DIG_OK) {
         status = options.shift ? report_shift(&options, &error) : report_runs(&options, &error);
     }
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digreport: %s\n", error.text);
     }
-    return status == DIG_OK                                  ? EXIT_SUCCESS
-           : (status == DIG_EINVAL || status == DIG_ESCHEMA) ? 2
-                                                             : EXIT_FAILURE;
+    return dig_streams_end("digreport", status == DIG_OK ? EXIT_SUCCESS
+                                        : (status == DIG_EINVAL || status == DIG_ESCHEMA)
+                                            ? 2
+                                            : EXIT_FAILURE);
 }

@@ -1,5 +1,6 @@
 // digtable: the analyst's tool. Computes digs and tables of digs, and shows what a table holds.
 
+#include "core/streams.h"
 #include "tools/digtable/commands.h"
 
 #include <signal.h>
@@ -53,11 +54,12 @@ static int run(const struct dig_arguments *const a)
 int main(const int argc, char **const argv)
 {
     struct dig_arguments a;
-    const int            code = dig_arguments_read(argc, argv, &a);
+    dig_streams_begin();
+    const int code = dig_arguments_read(argc, argv, &a);
     if (code != EXIT_DONE) {
         return code;
     }
     a.stop = &stop_requested;
     catch_signals();
-    return run(&a);
+    return dig_streams_end("digtable", run(&a));
 }

@@ -1,6 +1,7 @@
 // digwatch: what digsightd knows, in a terminal, live or from a log.
 
 #include "core/name.h"
+#include "core/streams.h"
 #include "tools/digwatch/model.h"
 #include "tools/digwatch/options.h"
 #include "tools/digwatch/prometheus.h"
@@ -142,6 +143,7 @@ int main(const int argc, char *argv[])
     static struct watch     w;
     struct digwatch_options options = { .url = NULL };
     struct dig_error        error   = { "" };
+    dig_streams_begin();
     if (digwatch_parse(argc, argv, &options, &error) != DIG_OK) {
         (void)fprintf(stderr, "digwatch: %s\nTry digwatch --help.\n", error.text);
         return 2;
@@ -165,7 +167,9 @@ int main(const int argc, char *argv[])
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digwatch: %s\n", error.text);
     }
-    return status == DIG_OK                                                     ? EXIT_SUCCESS
-           : status == DIG_EINVAL || (options.log != NULL && status == DIG_EIO) ? 2
-                                                                                : EXIT_FAILURE;
+    return dig_streams_end("digwatch",
+                           status == DIG_OK ? EXIT_SUCCESS
+                           : status == DIG_EINVAL || (options.log != NULL && status == DIG_EIO)
+                               ? 2
+                               : EXIT_FAILURE);
 }

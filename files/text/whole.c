@@ -103,8 +103,13 @@ static bool is_open_file(const char *const path)
 
 static FILE *open_stdout(void)
 {
-    const int fd = dup(STDOUT_FILENO);
-    return fd >= 0 ? fdopen(fd, "wb") : NULL;
+    const int   fd   = dup(STDOUT_FILENO);
+    FILE *const file = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    if (file == NULL && fd >= 0) {
+        (void)close(fd);
+        errno = EBADF; // open to be read alone, as dig_streams_begin() leaves one that was closed
+    }
+    return file;
 }
 
 // A pipe or a device. A pipe that nobody reads is not waited for.

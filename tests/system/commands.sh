@@ -28,6 +28,12 @@ swapped() { # WORD: its last two letters in each other's place
     echo "$1" | sed -E 's/(.)(.)$/\2\1/'
 }
 
+# What a full disk cuts ends in 1 and is told, whatever was computed.
+tells_full() { # PROGRAM ARGUMENT…
+    "$BIN/$1" "${@:2}" >/dev/full 2>"$work/err" </dev/null
+    is $? 1 && grep -q "^$1: standard output: " "$work/err"
+}
+
 programs=$(cd "$BIN" && ls)
 asked="" # what takes --json
 for program in $programs; do
@@ -37,6 +43,7 @@ for program in $programs; do
         takes_json=$(grep -E '^ {6}--json' "$work/out")
         options=$(sed -nE 's/^  (-., |    )(--[a-z]{5,}) .*/\2/p' "$work/out")
         check "$name: --version" says_version $name
+        check "$name: help that a full disk cuts is told" tells_full $name --help
         for option in $options; do
             [ "$option" = "$(swapped "$option")" ] || refuses "$option" $name "$(swapped "$option")" || { echo "$name $option" >>"$work/wrong"; cat "$work/err"; }
         done
@@ -67,9 +74,17 @@ sys.exit(not json.load(sys.stdin, parse_constant=no))' <"$work/out" 2>>"$work/er
 read_so_far=""
 json() { # NAME ARGUMENT…: NAME is a program, or one and its command
     check "$1: its JSON is read by Python" reads $1 "${@:2}"
+    [[ " $* " == *" - "* ]] || check "$1: JSON that a full disk cuts is told" tells_full $1 "${@:2}"
     read_so_far="$read_so_far$1
 "
 }
+for command in "digtable list $table" "digtable show $table 0" "digtable check tests/data/formats/table.sqlite" \
+    "digloop identify $table ${dig}__simpleA.csv" "digloop predict $table --identified $work/id.json --trajectory actual" \
+    "digloop design $table" "digsightd -c config/digsightd.yaml --check" "digreport shift tests/data/formats/daemon.lcm"; do
+    # shellcheck disable=SC2086 # words
+    check "$(cut -d' ' -f1,2 <<<"$command"): so is a result" tells_full $command
+done
+
 /usr/bin/python3 -c pass 2>"$work/err" || { skip_check "JSON" "no Python here"; finish; exit; }
 json "digtable list" $table --json
 mkdir "$work/t.sqlite.jobs"

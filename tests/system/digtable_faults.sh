@@ -70,6 +70,13 @@ check "with the same runs as ever" cmp "$work/whole.csv" "$work/out"
 (trap '' XFSZ; ulimit -f 8; exec "$BIN/digtable" merge "$work/merged.sqlite" "$work/whole.sqlite") 2>"$work/err" </dev/null
 code=$?
 check "a merge onto a full disk leaves nothing behind" eval 'is $code 1 && ! ls $work | grep -q ^merged'
+# A table's file takes the place of no stream that is closed: what is said there would be written over it.
+digtable generate $scene $grid -o "$work/closed.sqlite" --shard 1/12 -q
+"$BIN/digtable" generate $scene $grid -o "$work/closed.sqlite" --shard 2/12 0<&- 1>&- 2>&-
+digtable check "$work/closed.sqlite"
+check "with every stream closed a table grows and stays sound" eval 'is $code 0 && is $(runs "$work/closed.sqlite") 2'
+"$BIN/digtable" list "$work/closed.sqlite" 2>"$work/err" </dev/null >&-
+check "a list for an output that is closed is told" eval 'is $? 1 && grep -q "^digtable: standard output: Bad file descriptor" $work/err'
 (trap '' XFSZ; ulimit -f 1; exec "$BIN/digtable" dig $scene --trajectory scrape --friction .5 --rolling .2 --density 2500 -o "$work/curve.csv") 2>"$work/err" </dev/null
 code=$?
 check "a curve that does not fit neither" eval 'is $code 1 && grep -q "curve.csv" $work/err && ! ls $work | grep -q ^curve'

@@ -2,6 +2,7 @@
 
 #include "core/recording.h"
 #include "core/scene.h"
+#include "core/streams.h"
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
@@ -194,10 +195,11 @@ int main(const int argc, char *argv[])
 {
     struct dig_error       error = { "" };
     struct dig_rig_options options;
-    const enum dig_status  status = dig_rig_options_parse(argc, argv, &options, &error);
+    dig_streams_begin();
+    const enum dig_status status = dig_rig_options_parse(argc, argv, &options, &error);
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digrig: %s\nTry digrig --help.\n", error.text);
         return EXIT_USAGE;
     }
-    return work(&options);
+    return dig_streams_end("digrig", work(&options));
 }
