@@ -12,6 +12,7 @@
 #define GAP_MAX_s  0.02 // 50 Hz
 #define ROWS_MIN   2
 #define GAP_SLACK  1e-6 // of the gap: times are written with few digits
+#define VALUE_MAX  1e30 // far beyond every machine; products of such are numbers still
 #define TIME_MAX_s 9e9  // nanoseconds in 64 bits hold it; of seconds since 1970 till the year 2255
 
 // As struct dig_force_row has them, one behind the other.
@@ -63,7 +64,8 @@ bool dig_machine_recording_is(const char *const path)
 }
 
 static enum dig_status check_rows(const struct dig_csv *const csv, const char *const path,
-                                  struct dig_error *const error)
+                                  const struct dig_csv_column column[],
+                                  struct dig_error *const     error)
 {
     if (csv->rows < ROWS_MIN) {
         return dig_error_set(error, DIG_EINVAL, "%s:%d: column t_s: 1 row, expected at least %d",
@@ -80,6 +82,14 @@ static enum dig_status check_rows(const struct dig_csv *const csv, const char *c
             return dig_error_set(error, DIG_EINVAL,
                                  "%s:%d: column t_s: %.9g after %.9g, expected ascending time",
                                  path, csv->line[i], t_s, before_s);
+        }
+        for (size_t c = 1; c < csv->columns; c++) {
+            const double value = csv->value[i * csv->columns + c];
+            if (fabs(value) > VALUE_MAX) {
+                return dig_error_set(error, DIG_EINVAL,
+                                     "%s:%d: column %s: %g, expected within +-%g", path,
+                                     csv->line[i], column[c].name, value, VALUE_MAX);
+            }
         }
     }
     return DIG_OK;
@@ -106,12 +116,12 @@ static enum dig_status check_rate(const struct dig_csv *const csv, const bool ea
 
 // Checks the rows' times and their rate, and makes room for as many of `size` bytes.
 static enum dig_status make_rows(const struct dig_csv *const csv, const char *const path,
-                                 const bool forces, const size_t size, void **const rows,
-                                 struct dig_error *const error)
+                                 const struct dig_csv_column column[], const size_t size,
+                                 void **const rows, struct dig_error *const error)
 {
-    enum dig_status status = check_rows(csv, path, error);
+    enum dig_status status = check_rows(csv, path, column, error);
     if (status == DIG_OK) {
-        status = check_rate(csv, forces, path, error);
+        status = check_rate(csv, column == force_column, path, error);
     }
     if (status != DIG_OK) {
         return status;
@@ -128,7 +138,7 @@ static enum dig_status take_force_rows(const struct dig_csv *const csv, const ch
 {
     void                 *rows = NULL;
     const enum dig_status status =
-        make_rows(csv, path, true, sizeof(struct dig_force_row), &rows, error);
+        make_rows(csv, path, force_column, sizeof(struct dig_force_row), &rows, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -170,7 +180,7 @@ static enum dig_status take_machine_rows(const struct machine_columns *const of,
 {
     void                 *rows = NULL;
     const enum dig_status status =
-        make_rows(csv, path, false, sizeof(struct dig_sample), &rows, error);
+        make_rows(csv, path, of->column, sizeof(struct dig_sample), &rows, error);
     if (status != DIG_OK) {
         return status;
     }

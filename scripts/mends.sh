@@ -36,6 +36,8 @@ a Modbus answer that lies of its length is none|firmware_host/bus/modbus_tcp.c|s
 an LCM channel ends within its datagram|files/lcm/lcm_datagram.c|s/memchr(channel, .*/memchr(channel, 0, 65000);/|files/test_lcm_datagram
 a part of an LCM message is none|files/lcm/lcm_datagram.c|s/memcmp(bytes, short_message, sizeof short_message)/memcmp(bytes, short_message, 3)/|files/test_lcm_datagram
 an LCM message longer than it says is none|files/lcm/lcm_layout.c|s/return at == size;/return true;/|files/test_lcm_layout
+a recording beyond all numbers is refused|files/recording_csv.c|s/fabs(value) > VALUE_MAX/false/|files/test_recording_csv
+digs beyond all numbers end a fit|closed_loop/fit/posterior.c|s/!isfinite(weigh(c, power, weight))/weigh(c, power, weight) < 0.0/|closed_loop/test_posterior
 no table stands in the place of a closed stream|core/streams.c|s/fcntl(fd, F_GETFD) < 0/0/|core/test_streams
 a box of more grains than memory holds is refused|offline_dem/dig/packing.c|s/!(total <= MOST) .. (double)n > MOST/false/|offline_dem/test_packing
 a number of an LCM message is within it|files/lcm/lcm_layout.c|s/number >= 0 \&\& (size_t)number <= INT32_MAX . 8/true/|files/test_lcm_layout

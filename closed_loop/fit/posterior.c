@@ -211,7 +211,10 @@ static void anneal(struct cloud *const c, uint64_t seed)
     while (c->power < 1.0) {
         double       weight[POINTS];
         const double power = next_power(c, weight);
-        (void)weigh(c, power, weight);
+        // Beyond all numbers no point outweighs another, and no power would ever be reached.
+        if (!isfinite(weigh(c, power, weight))) {
+            break;
+        }
         draw_anew(c, weight, &seed);
         c->power = power;
         measure_covariance(c);

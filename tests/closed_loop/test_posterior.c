@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { DIGS = 4, CAMPAIGNS = 100, GRID = 61 };
 
@@ -102,6 +103,22 @@ TEST(an_interval_holds_nine_tenths_of_the_posterior)
             // What is drawn has an error of its own, and so has the grid; a bound is counted in.
             assert_true(share > 0.86 && (share < 0.95 || leans));
         }
+    }
+}
+
+// A recording of others may hold anything: of digs beyond all numbers the posterior still ends.
+TEST(digs_beyond_all_numbers_leave_the_whole_of_the_bounds)
+{
+    const struct dig_gravel gravel = { { 0.6, 0.6, 2500 } };
+    uint64_t                seed   = 3;
+    struct dig_fitted       fitted = fit_digs(&gravel, &seed);
+    batch.dig[0].y[0]              = 1e200;
+    dig_whitened_digs_summarise(&batch);
+    (void)alarm(60);
+    dig_posterior_intervals(&batch, 1, &fitted, NULL);
+    (void)alarm(0);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        assert_true(fitted.high[a] - fitted.low[a] > 1.5);
     }
 }
 

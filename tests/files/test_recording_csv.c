@@ -179,6 +179,9 @@ TEST(every_defect_of_a_force_recording_is_told_by_line_and_column)
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.1,0,0,0,0,0,0,0,0,0\n",
           ":3: column t_s: 0.1 s between samples, expected 0.02 s or less" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n1e300,0,0,0,0,0,0,0,0,0\n", ":3: column t_s: 1e+300" },
+        { FORCE "0,0,0,0,1e30,0,0,0,,0\n.01,0,0,0,-1e308,0,0,0,0,0\n",
+          ":3: column Fx_N: -1e+308, expected within +-1e+30" },
+        { FORCE "0,0,0,2e30,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,0,0\n", ":2: column theta_deg: 2e+30" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_error     error = { "" };
@@ -212,6 +215,12 @@ TEST(defects_of_machine_recordings_are_told_too)
                          scratch_write("bad.csv", MACHINE "0,,,,,,,,,\n,,,,,,,,,\n"), &r, &error),
                      DIG_EINVAL);
     assert_contains(error.text, "bad.csv:3: column t_s: \"\"");
+    assert_int_equal(
+        dig_machine_recording_read(
+            scratch_write("bad.csv", MACHINE "0,,,,,,,,,\n.01,1,1,1,1,1,1,1,1e160,1\n"), &r,
+            &error),
+        DIG_EINVAL);
+    assert_contains(error.text, "bad.csv:3: column bucket_head_Pa: 1e+160, expected within");
     assert_int_equal(r.rows, 42);
 }
 
