@@ -132,21 +132,36 @@ static enum dig_status count(struct growth *const g, const char *const path,
     return DIG_OK;
 }
 
+// Whether a line begins at text + at, as libyaml counts them: behind LF, CR, NEL, LS or PS.
+static bool begins_line(const char *const text, const size_t at)
+{
+    static const char *const breaks[] = { "\n", "\r", "\xC2\x85", "\xE2\x80\xA8", "\xE2\x80\xA9" };
+    if (at > 0 && text[at - 1] == '\r' && text[at] == '\n') {
+        return false;
+    }
+    bool begins = at == 0;
+    for (size_t i = 0; i < sizeof breaks / sizeof breaks[0] && !begins; i++) {
+        const size_t length = strlen(breaks[i]);
+        begins              = at >= length && memcmp(text + at - length, breaks[i], length) == 0;
+    }
+    return begins;
+}
+
 static enum dig_status check_directives(const char *const path, const char *const text,
                                         const size_t size, struct dig_error *const error)
 {
-    int    line       = 1;
+    int    line       = 0;
     size_t directives = 0;
-    for (const char *c = text; c != NULL && c < text + size; line++) {
-        directives += *c == '%' ? 1 : 0;
+    for (size_t at = 0; at < size; at++) {
+        const bool begins = begins_line(text, at);
+        line += begins ? 1 : 0;
+        directives += begins && text[at] == '%' ? 1 : 0;
         if (directives > DIRECTIVES) {
             return dig_error_set(error, DIG_EINVAL,
                                  "%s:%d: more than %d directives (lines that "
                                  "begin with %%), expected fewer",
                                  path, line, DIRECTIVES);
         }
-        const char *const end = memchr(c, '\n', size - (size_t)(c - text));
-        c                     = end != NULL ? end + 1 : NULL;
     }
     return DIG_OK;
 }
