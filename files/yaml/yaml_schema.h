@@ -1,5 +1,5 @@
-// Words for the schemas of this folder: a file's numbers go straight into the structs of core/.
-// Angles arrive as degrees there, and who loads them converts them at once.
+// Words for schemas: a file's numbers go straight into the structs they are for. Where their unit
+// differs, as of angles, which arrive as degrees, who loads them converts them at once.
 
 #ifndef DIG_FILES_YAML_YAML_SCHEMA_H
 #define DIG_FILES_YAML_YAML_SCHEMA_H

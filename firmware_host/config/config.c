@@ -1,157 +1,66 @@
 #include "firmware_host/config/config.h"
 
+#include "core/name.h"
 #include "files/yaml/yaml.h"
-#include "firmware_host/config/config_parts.h"
+#include "firmware_host/config/config_text.h"
 
 #include <assert.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DEFAULT_LCM_URL "udpm://239.255.76.67:7667?ttl=0"
 
-static enum dig_status take_estimator(const struct dig_config_work *const    work,
-                                      const struct dig_estimator_text *const text)
-{
-    struct dig_estimator_settings *const to       = &work->config->estimator;
-    const struct dig_config_number       number[] = {
-              { "estimator.sample_s", text->sample_s, 0.001, 0.1, &to->tick_s },
-              { "estimator.contact_sigmas", text->contact_sigmas, 1.0, 1000.0, &to->contact_sigmas },
-              { "estimator.contact_hold_s", text->contact_hold_s, 0.0, 10.0, &to->contact_hold_s },
-              { "estimator.exit_hold_s", text->exit_hold_s, 0.0, 10.0, &to->exit_hold_s },
-              { "estimator.air_bias_s", text->air_bias_s, 0.0, 1000.0, &to->air_bias_s },
-              { "estimator.path_limit_m", text->path_limit_m, 1e-4, 10.0, &to->path_limit_m },
-              { "estimator.outside_floors", text->outside_floors, 0.1, 1000.0, &to->outside_floors },
-    };
-    const char           *reason = NULL;
-    const enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
-    if (status == DIG_OK && dig_estimator_settings_check(to, &reason) != DIG_OK) {
-        return dig_yaml_refuse(work->path, work->error, "estimator: %s", reason);
-    }
-    return status;
-}
+// Where the settings of a kind stand; those of another are passed over.
+static const char *const parts[] = {
+    [DIG_INPUT_CAN]        = "input.can",
+    [DIG_INPUT_MODBUS_TCP] = "input.modbus",
+    [DIG_INPUT_MODBUS_RTU] = "input.modbus",
+    [DIG_INPUT_REPLAY]     = "input.replay",
+};
 
-static enum dig_status take_realtime(const struct dig_config_work *const   work,
-                                     const struct dig_realtime_text *const text)
-{
-    struct dig_rt_settings *const to      = &work->config->realtime;
-    const struct dig_config_whole whole[] = {
-        { "realtime.priority", text->priority, 0, 99, &to->priority },
-        { "realtime.cpu", text->cpu, -1, 1023, &to->cpu },
-    };
-    if (text->lock_memory != NULL) {
-        to->lock_memory = *text->lock_memory;
-    }
-    return dig_config_take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
-}
+// A number: what the file may say, and what is kept of it.
+struct number {
+    const char *key;
+    size_t      at; // in struct dig_config
+    bool        whole;
+    double      least, most; // in the file's unit
+    double      factor;      // from there to what is kept; 0: the inverse is kept
+};
 
-static enum dig_status take_identify(const struct dig_config_work *const   work,
-                                     const struct dig_identify_text *const text)
-{
-    struct dig_config *const config = work->config;
-    enum dig_status          status = DIG_OK;
-    for (unsigned i = 0; status == DIG_OK && i < text->trajectories_count; i++) {
-        status = dig_config_take_text(work, "identify.trajectories", text->trajectories[i],
-                                      DIG_NAME_SIZE, config->identify_trajectory[i]);
-        config->identify_trajectories = i + 1;
-    }
-    return status;
-}
+#define AT(member) offsetof(struct dig_config, member)
 
-static enum dig_status take_publish(const struct dig_config_work *const  work,
-                                    const struct dig_publish_text *const text)
-{
-    struct dig_config *const       config        = work->config;
-    double                         prediction_Hz = 1.0 / config->prediction_s;
-    const struct dig_config_number number[]      = {
-             { "publish.prediction_Hz", text->prediction_Hz, 0.1, 100.0, &prediction_Hz },
-    };
-    const struct dig_config_whole whole[] = {
-        { "publish.estimate_every", text->estimate_every, 1, 1000, &config->estimate_every },
-    };
-    const enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
-    config->prediction_s         = 1.0 / prediction_Hz;
-    return status == DIG_OK ? dig_config_take_wholes(work, CYAML_ARRAY_LEN(whole), whole) : status;
-}
-
-static enum dig_status take_match(const struct dig_config_work *const work,
-                                  const struct dig_match_text *const  text)
-{
-    struct dig_config *const      config    = work->config;
-    double                        expires_h = config->match_expires_s / 3600.0;
-    const struct dig_config_whole whole[]   = {
-          { "match.max_evaluations", text->max_evaluations, 1, 1000000, &config->match_evaluations },
-    };
-    const struct dig_config_number number[] = {
-        { "match.least_path", text->least_path, 0.01, 1.0, &config->match_least_path },
-        { "match.early_path", text->early_path, 0.1, 1.0, &config->match_early_path },
-        { "match.expires_h", text->expires_h, 0.01, 1000.0, &expires_h },
-        { "match.drift_floors", text->drift_floors, 1.0, 1000.0, &config->drift_floors },
-    };
-    enum dig_status status = dig_config_take_wholes(work, CYAML_ARRAY_LEN(whole), whole);
-    status =
-        status == DIG_OK ? dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number) : status;
-    if (status == DIG_OK && text->state != NULL) {
-        status = dig_config_take_path(work, "match.state", text->state, &config->match_state);
-    }
-    config->match_expires_s = expires_h * 3600.0;
-    return status;
-}
-
-static enum dig_status take_parts(const struct dig_config_work *const work,
-                                  const struct dig_config_text *const text)
-{
-    struct dig_config *const config = work->config;
-    enum dig_status          status = take_estimator(work, &text->estimator);
-    status = status == DIG_OK ? take_realtime(work, &text->realtime) : status;
-    status = status == DIG_OK ? take_identify(work, &text->identify) : status;
-    status = status == DIG_OK ? take_publish(work, &text->publish) : status;
-    status = status == DIG_OK ? take_match(work, &text->match) : status;
-    return status == DIG_OK && text->lcm.url != NULL
-               ? dig_config_take_text(work, "lcm.url", text->lcm.url, sizeof config->lcm_url,
-                                      config->lcm_url)
-               : status;
-}
-
-static enum dig_status take_top(const struct dig_config_work *const work,
-                                const struct dig_config_text *const text)
-{
-    struct dig_config *const       config   = work->config;
-    double                         tick_Hz  = 1.0 / config->tick_s;
-    double                         stale_ms = config->stale_s * 1e3;
-    const struct dig_config_number number[] = {
-        { "tick_Hz", text->tick_Hz, 100.0, 2000.0, &tick_Hz },
-        { "stale_ms", text->stale_ms, 1.0, 60e3, &stale_ms },
-        { "time_scale", text->time_scale, 0.01, 100.0, &config->time_scale },
-    };
-    enum dig_status status = dig_config_take_numbers(work, CYAML_ARRAY_LEN(number), number);
-    if (status == DIG_OK && text->time_scale != NULL && text->input.kind == DIG_INPUT_REPLAY) {
-        status =
-            dig_yaml_refuse(work->path, work->error,
-                            "time_scale: given with a replay, expected input.replay.speed alone");
-    }
-    if (status == DIG_OK && text->scene != NULL) {
-        status =
-            dig_config_take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
-    }
-    status = status == DIG_OK ? dig_config_take_path(work, "table", text->table, &config->table)
-                              : status;
-    status = status == DIG_OK
-                 ? dig_config_take_path(work, "machine", text->machine, &config->machine)
-                 : status;
-    if (status == DIG_OK && text->model != NULL) {
-        status = dig_config_take_path(work, "model", text->model, &config->model);
-    }
-
-    config->tick_s           = 1.0 / tick_Hz;
-    config->estimator.tick_s = config->tick_s;
-    config->stale_s          = stale_ms * 1e-3;
-    return status;
-}
+static const struct number numbers[] = {
+    { "tick_Hz", AT(tick_s), false, 100.0, 2000.0, 0.0 },
+    { "stale_ms", AT(stale_s), false, 1.0, 60e3, 1e-3 },
+    { "time_scale", AT(time_scale), false, 0.01, 100.0, 1.0 },
+    { "input.modbus.poll_Hz", AT(modbus.poll_s), false, 1.0, 1000.0, 0.0 },
+    { "input.modbus.baud", AT(modbus.baud), true, 1200, 4000000, 1.0 },
+    { "input.modbus.unit", AT(modbus.unit), true, 0, 247, 1.0 },
+    { "input.replay.speed", AT(replay_speed), false, 0.01, 100.0, 1.0 },
+    { "estimator.sample_s", AT(estimator.tick_s), false, 0.001, 0.1, 1.0 },
+    { "estimator.contact_sigmas", AT(estimator.contact_sigmas), false, 1.0, 1000.0, 1.0 },
+    { "estimator.contact_hold_s", AT(estimator.contact_hold_s), false, 0.0, 10.0, 1.0 },
+    { "estimator.exit_hold_s", AT(estimator.exit_hold_s), false, 0.0, 10.0, 1.0 },
+    { "estimator.air_bias_s", AT(estimator.air_bias_s), false, 0.0, 1000.0, 1.0 },
+    { "estimator.path_limit_m", AT(estimator.path_limit_m), false, 1e-4, 10.0, 1.0 },
+    { "estimator.outside_floors", AT(estimator.outside_floors), false, 0.1, 1000.0, 1.0 },
+    { "realtime.priority", AT(realtime.priority), true, 0, 99, 1.0 },
+    { "realtime.cpu", AT(realtime.cpu), true, -1, 1023, 1.0 },
+    { "publish.prediction_Hz", AT(prediction_s), false, 0.1, 100.0, 0.0 },
+    { "publish.estimate_every", AT(estimate_every), true, 1, 1000, 1.0 },
+    { "match.max_evaluations", AT(match_evaluations), true, 1, 1000000, 1.0 },
+    { "match.least_path", AT(match_least_path), false, 0.01, 1.0, 1.0 },
+    { "match.early_path", AT(match_early_path), false, 0.1, 1.0, 1.0 },
+    { "match.expires_h", AT(match_expires_s), false, 0.01, 1000.0, 3600.0 },
+    { "match.drift_floors", AT(drift_floors), false, 1.0, 1000.0, 1.0 },
+};
 
 static struct dig_config defaults(void)
 {
-    struct dig_config config = {
-        .modbus            = { .baud = 115200, .parity = 'E', .unit = 1 },
+    return (struct dig_config){
+        .modbus            = { .baud = 115200, .parity = 'E', .unit = 1, .poll_s = 1.0 / 200.0 },
         .replay_speed      = 1.0,
         .tick_s            = 1.0 / 1000.0,
         .stale_s           = 0.1,
@@ -167,8 +76,198 @@ static struct dig_config defaults(void)
         .estimate_every    = 1,
         .prediction_s      = 1.0 / 15.0,
     };
-    config.estimator.tick_s = config.tick_s;
-    return config;
+}
+
+// What is being read, into which settings, and where errors go.
+struct work {
+    const char                   *path;
+    const struct dig_config_text *text;
+    struct dig_config            *config;
+    struct dig_error             *error;
+};
+
+static bool is_given(const struct work *const work, const char *const key)
+{
+    return dig_yaml_line(work->path, key) > 0;
+}
+
+static bool is_passed_over(const struct work *const work, const char *const key)
+{
+    const char *const part = parts[work->config->kind];
+    return strncmp(key, "input.", 6) == 0 && strncmp(key, part, strlen(part)) != 0;
+}
+
+static enum dig_status take_numbers(const struct work *const work)
+{
+    for (size_t i = 0; i < CYAML_ARRAY_LEN(numbers); i++) {
+        const struct number *const n     = &numbers[i];
+        const void *const          from  = (const char *)&work->text->config + n->at;
+        void *const                to    = (char *)work->config + n->at;
+        const double               value = n->whole ? *(const int *)from : *(const double *)from;
+        if (is_passed_over(work, n->key) || !is_given(work, n->key)) {
+            continue;
+        }
+        if (!(value >= n->least && value <= n->most)) {
+            return dig_yaml_refuse(work->path, work->error,
+                                   n->whole ? "%s: %.0f, expected %.0f … %.0f"
+                                            : "%s: %g, expected %g … %g",
+                                   n->key, value, n->least, n->most);
+        }
+        if (n->whole) {
+            *(int *)to = (int)value;
+        } else {
+            *(double *)to = n->factor > 0.0 ? value * n->factor : 1.0 / value;
+        }
+    }
+    return DIG_OK;
+}
+
+// from: NULL where absent.
+static enum dig_status take_text(const struct work *const work, const char *const key,
+                                 const char *const from, const size_t size, char to[])
+{
+    const int length = from != NULL ? snprintf(to, size, "%s", from) : 0;
+    if (length < 0 || (size_t)length >= size) {
+        return dig_yaml_refuse(work->path, work->error, "%s: %d characters, expected at most %zu",
+                               key, length, size - 1);
+    }
+    return DIG_OK;
+}
+
+static enum dig_status take_texts(const struct work *const work)
+{
+    const struct dig_config_text *const text   = work->text;
+    struct dig_config *const            config = work->config;
+    const struct {
+        const char           *key, *from;
+        struct dig_file_name *to; // relative to the configuration's folder
+    } path[] = {
+        { "table", text->table, &config->table },
+        { "machine", text->machine, &config->machine },
+        { "model", text->model, &config->model },
+        { "input.can.dbc", text->dbc, &config->dbc },
+        { "input.can.map", text->can_map, &config->map },
+        { "input.modbus.map", text->modbus_map, &config->map },
+        { "input.replay.file", text->replay, &config->replay },
+        { "match.state", text->match_state, &config->match_state },
+    };
+    for (size_t i = 0; i < CYAML_ARRAY_LEN(path); i++) {
+        if (path[i].from != NULL && !is_passed_over(work, path[i].key) &&
+            !dig_path_beside(work->path, path[i].from, sizeof path[i].to->text, path[i].to->text)) {
+            return dig_yaml_refuse(work->path, work->error, "%s: too long a path", path[i].key);
+        }
+    }
+    const enum dig_status status =
+        take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
+    return status == DIG_OK
+               ? take_text(work, "lcm.url", text->lcm_url, sizeof config->lcm_url, config->lcm_url)
+               : status;
+}
+
+// "127.0.0.1:1502" or "[::1]:1502"
+static enum dig_status take_address(const struct work *const work, const char *const text,
+                                    struct dig_modbus_address *const address)
+{
+    const char *const colon  = strrchr(text, ':');
+    const size_t      length = colon != NULL ? (size_t)(colon - text) : 0;
+    char             *end    = NULL;
+    const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
+    if (length == 0 || length >= sizeof address->host || end == colon + 1 || *end != '\0' ||
+        port < 1 || port > 65535) {
+        return dig_yaml_refuse(work->path, work->error,
+                               "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
+    }
+    const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
+    memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
+    address->host[length - 2 * (size_t)brackets] = '\0';
+    address->port                                = (int)port;
+    return DIG_OK;
+}
+
+static enum dig_status take_parity(const struct work *const work, const char *const text,
+                                   struct dig_modbus_address *const address)
+{
+    static const char *const words[] = { "none", "even", "odd" };
+    for (size_t i = 0; i < CYAML_ARRAY_LEN(words); i++) {
+        if (strcmp(text, words[i]) == 0) {
+            address->parity = "NEO"[i];
+            return DIG_OK;
+        }
+    }
+    return dig_yaml_refuse(work->path, work->error,
+                           "input.modbus.parity: \"%.20s\", expected none, even or odd", text);
+}
+
+static enum dig_status take_server(const struct work *const work)
+{
+    const struct dig_config_text *const text    = work->text;
+    struct dig_modbus_address *const    address = &work->config->modbus;
+    const bool                          tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
+    const char *const                   key = tcp ? "input.modbus.address" : "input.modbus.device";
+    if ((tcp ? text->address : text->device) == NULL) {
+        return dig_yaml_refuse(work->path, work->error, "%s: missing, expected %s", key,
+                               tcp ? "HOST:PORT" : "a serial device");
+    }
+    const enum dig_status status =
+        tcp ? take_address(work, text->address, address)
+            : take_text(work, key, text->device, sizeof address->device, address->device);
+    return status == DIG_OK && text->parity != NULL ? take_parity(work, text->parity, address)
+                                                    : status;
+}
+
+static enum dig_status take_input(const struct work *const work)
+{
+    struct dig_config *const config   = work->config;
+    enum dig_status          status   = DIG_OK;
+    double                   sample_s = config->modbus.poll_s;
+    if (!is_given(work, parts[config->kind])) {
+        return dig_yaml_refuse(work->path, work->error, "%s: missing, expected the settings of %s",
+                               parts[config->kind], dig_config_kinds[config->kind].str);
+    }
+    switch (config->kind) {
+    case DIG_INPUT_CAN:
+        sample_s = 0.01; // the cycle of pressures and angles
+        status   = take_text(work, "input.can.interface", work->text->interface,
+                             sizeof config->can_interface, config->can_interface);
+        break;
+    case DIG_INPUT_MODBUS_TCP:
+    case DIG_INPUT_MODBUS_RTU: status = take_server(work); break;
+    case DIG_INPUT_REPLAY:
+        sample_s = 0.005; // what digrig records at
+        if (is_given(work, "time_scale")) {
+            return dig_yaml_refuse(
+                work->path, work->error,
+                "time_scale: given with a replay, expected input.replay.speed alone");
+        }
+        config->time_scale = config->replay_speed;
+        break;
+    }
+    if (!is_given(work, "estimator.sample_s")) {
+        config->estimator.tick_s = sample_s;
+    }
+    return status;
+}
+
+static enum dig_status take(const struct work *const work)
+{
+    struct dig_config *const       config = work->config;
+    const struct dig_config *const given  = &work->text->config;
+
+    config->kind                  = given->kind;
+    config->identify_trajectories = given->identify_trajectories;
+    memcpy(config->identify_trajectory, given->identify_trajectory,
+           sizeof config->identify_trajectory);
+    if (is_given(work, "realtime.lock_memory")) {
+        config->realtime.lock_memory = given->realtime.lock_memory;
+    }
+    enum dig_status status = take_numbers(work);
+    status                 = status == DIG_OK ? take_texts(work) : status;
+    status                 = status == DIG_OK ? take_input(work) : status;
+    const char *reason     = NULL;
+    if (status == DIG_OK && dig_estimator_settings_check(&config->estimator, &reason) != DIG_OK) {
+        return dig_yaml_refuse(work->path, work->error, "estimator: %s", reason);
+    }
+    return status;
 }
 
 enum dig_status dig_config_read(const char *const path, struct dig_config *const config,
@@ -180,12 +279,8 @@ enum dig_status dig_config_read(const char *const path, struct dig_config *const
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_config                   loaded = defaults();
-    const struct dig_config_work        work = { .path = path, .config = &loaded, .error = error };
-    const struct dig_config_text *const text = (const struct dig_config_text *)data;
-    status                                   = take_top(&work, text);
-    status = status == DIG_OK ? dig_config_take_input(&work, &text->input) : status;
-    status = status == DIG_OK ? take_parts(&work, text) : status;
+    struct dig_config loaded = defaults();
+    status                   = take(&(const struct work){ path, data, &loaded, error });
     dig_yaml_free(&dig_config_schema, data);
     if (status == DIG_OK) {
         *config = loaded;

@@ -1,130 +1,111 @@
 #include "firmware_host/config/config_text.h"
 
-#include <stddef.h>
+#include "files/yaml/yaml_schema.h"
 
-#define REQUIRED CYAML_FLAG_DEFAULT
-#define POINTER  CYAML_FLAG_POINTER
-#define OPTIONAL (CYAML_FLAG_OPTIONAL | CYAML_FLAG_POINTER)
+#define FLOAT(key, member) CYAML_FIELD_FLOAT(key, OPTIONAL, struct dig_config_text, config.member)
+#define WHOLE(key, member) CYAML_FIELD_INT(key, OPTIONAL, struct dig_config_text, config.member)
+#define WORD(key, member, flags)                                                                   \
+    CYAML_FIELD_STRING_PTR(key, flags, struct dig_config_text, member, 1, 1000)
+#define GIVEN CYAML_FLAG_POINTER
+#define MAYBE (CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL)
 
-#define TEXT(type, name, flags)                                                                    \
-    CYAML_FIELD_STRING_PTR(#name, flags, struct dig_##type, name, 1, 1000)
-#define NUMBER(type, name) CYAML_FIELD_FLOAT_PTR(#name, OPTIONAL, struct dig_##type, name)
-#define WHOLE(type, name)  CYAML_FIELD_INT_PTR(#name, OPTIONAL, struct dig_##type, name)
-#define KIND(name)                                                                                 \
-    CYAML_FIELD_MAPPING_PTR(#name, OPTIONAL, struct dig_input_text, name, name##_fields)
-#define PART(name)                                                                                 \
-    CYAML_FIELD_MAPPING(#name, CYAML_FLAG_OPTIONAL, struct dig_config_text, name, name##_fields)
-
-static const cyaml_strval_t kinds[] = {
-    { "can", DIG_INPUT_CAN },
-    { "modbus-tcp", DIG_INPUT_MODBUS_TCP },
-    { "modbus-rtu", DIG_INPUT_MODBUS_RTU },
-    { "replay", DIG_INPUT_REPLAY },
+const cyaml_strval_t dig_config_kinds[] = {
+    [DIG_INPUT_CAN]        = { "can", DIG_INPUT_CAN },
+    [DIG_INPUT_MODBUS_TCP] = { "modbus-tcp", DIG_INPUT_MODBUS_TCP },
+    [DIG_INPUT_MODBUS_RTU] = { "modbus-rtu", DIG_INPUT_MODBUS_RTU },
+    [DIG_INPUT_REPLAY]     = { "replay", DIG_INPUT_REPLAY },
 };
 
 static const cyaml_schema_field_t can_fields[] = {
-    TEXT(can_text, interface, POINTER),
-    TEXT(can_text, dbc, POINTER),
-    TEXT(can_text, map, POINTER),
+    WORD("interface", interface, GIVEN),
+    WORD("dbc", dbc, GIVEN),
+    WORD("map", can_map, GIVEN),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t modbus_fields[] = {
-    TEXT(modbus_text, address, OPTIONAL),
-    TEXT(modbus_text, device, OPTIONAL),
-    WHOLE(modbus_text, baud),
-    TEXT(modbus_text, parity, OPTIONAL),
-    WHOLE(modbus_text, unit),
-    TEXT(modbus_text, map, POINTER),
-    NUMBER(modbus_text, poll_Hz),
-    CYAML_FIELD_END,
+    WORD("address", address, MAYBE), WORD("device", device, MAYBE),
+    WHOLE("baud", modbus.baud),      WORD("parity", parity, MAYBE),
+    WHOLE("unit", modbus.unit),      WORD("map", modbus_map, GIVEN),
+    FLOAT("poll_Hz", modbus.poll_s), CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t replay_fields[] = {
-    TEXT(replay_text, file, POINTER),
-    NUMBER(replay_text, speed),
+    WORD("file", replay, GIVEN),
+    FLOAT("speed", replay_speed),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t input_fields[] = {
-    CYAML_FIELD_ENUM("kind", REQUIRED, struct dig_input_text, kind, kinds, CYAML_ARRAY_LEN(kinds)),
-    KIND(can),
-    KIND(modbus),
-    KIND(replay),
+    CYAML_FIELD_ENUM("kind", REQUIRED, struct dig_config_text, config.kind, dig_config_kinds,
+                     CYAML_ARRAY_LEN(dig_config_kinds)),
+    ACROSS("can", OPTIONAL, dig_config_text, can_fields),
+    ACROSS("modbus", OPTIONAL, dig_config_text, modbus_fields),
+    ACROSS("replay", OPTIONAL, dig_config_text, replay_fields),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t realtime_fields[] = {
-    WHOLE(realtime_text, priority),
-    WHOLE(realtime_text, cpu),
-    CYAML_FIELD_BOOL_PTR("lock_memory", OPTIONAL, struct dig_realtime_text, lock_memory),
+    WHOLE("priority", realtime.priority),
+    WHOLE("cpu", realtime.cpu),
+    CYAML_FIELD_BOOL("lock_memory", OPTIONAL, struct dig_config_text, config.realtime.lock_memory),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t lcm_fields[] = {
-    TEXT(lcm_text, url, OPTIONAL),
+    WORD("url", lcm_url, MAYBE),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t estimator_fields[] = {
-    NUMBER(estimator_text, sample_s),       NUMBER(estimator_text, contact_sigmas),
-    NUMBER(estimator_text, contact_hold_s), NUMBER(estimator_text, exit_hold_s),
-    NUMBER(estimator_text, air_bias_s),     NUMBER(estimator_text, path_limit_m),
-    NUMBER(estimator_text, outside_floors), CYAML_FIELD_END,
-};
-
-static const cyaml_schema_field_t match_fields[] = {
-    WHOLE(match_text, max_evaluations),
-    TEXT(match_text, state, OPTIONAL),
-    NUMBER(match_text, least_path),
-    NUMBER(match_text, early_path),
-    NUMBER(match_text, expires_h),
-    NUMBER(match_text, drift_floors),
+    FLOAT("sample_s", estimator.tick_s),
+    FLOAT("contact_sigmas", estimator.contact_sigmas),
+    FLOAT("contact_hold_s", estimator.contact_hold_s),
+    FLOAT("exit_hold_s", estimator.exit_hold_s),
+    FLOAT("air_bias_s", estimator.air_bias_s),
+    FLOAT("path_limit_m", estimator.path_limit_m),
+    FLOAT("outside_floors", estimator.outside_floors),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_value_t name_value = { CYAML_VALUE_STRING(POINTER, char *, 1,
-                                                                    DIG_NAME_SIZE - 1) };
+static const cyaml_schema_field_t match_fields[] = {
+    WHOLE("max_evaluations", match_evaluations),
+    WORD("state", match_state, MAYBE),
+    FLOAT("least_path", match_least_path),
+    FLOAT("early_path", match_early_path),
+    FLOAT("expires_h", match_expires_s),
+    FLOAT("drift_floors", drift_floors),
+    CYAML_FIELD_END,
+};
 
 static const cyaml_schema_field_t identify_fields[] = {
-    CYAML_FIELD_SEQUENCE("trajectories", POINTER, struct dig_identify_text, trajectories,
-                         &name_value, 1, DIG_TRAJECTORY_MAX),
+    LIST("trajectories", REQUIRED, dig_config_text, config.identify_trajectory,
+         config.identify_trajectories, &dig_yaml_name, 1, DIG_TRAJECTORY_MAX),
     CYAML_FIELD_END,
 };
 
 static const cyaml_schema_field_t publish_fields[] = {
-    WHOLE(publish_text, estimate_every),
-    NUMBER(publish_text, prediction_Hz),
+    WHOLE("estimate_every", estimate_every),
+    FLOAT("prediction_Hz", prediction_s),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_field_t config_fields[] = {
-    TEXT(config_text, table, POINTER),
-    TEXT(config_text, machine, POINTER),
-    TEXT(config_text, scene, OPTIONAL),
-    TEXT(config_text, model, OPTIONAL),
-    CYAML_FIELD_MAPPING("input", REQUIRED, struct dig_config_text, input, input_fields),
-    NUMBER(config_text, tick_Hz),
-    NUMBER(config_text, stale_ms),
-    NUMBER(config_text, time_scale),
-    PART(realtime),
-    PART(lcm),
-    PART(estimator),
-    PART(match),
-    PART(identify),
-    PART(publish),
+static const cyaml_schema_field_t fields[] = {
+    WORD("table", table, GIVEN),
+    WORD("machine", machine, GIVEN),
+    WORD("scene", scene, MAYBE),
+    WORD("model", model, MAYBE),
+    ACROSS("input", REQUIRED, dig_config_text, input_fields),
+    FLOAT("tick_Hz", tick_s),
+    FLOAT("stale_ms", stale_s),
+    FLOAT("time_scale", time_scale),
+    ACROSS("realtime", OPTIONAL, dig_config_text, realtime_fields),
+    ACROSS("lcm", OPTIONAL, dig_config_text, lcm_fields),
+    ACROSS("estimator", OPTIONAL, dig_config_text, estimator_fields),
+    ACROSS("match", OPTIONAL, dig_config_text, match_fields),
+    ACROSS("identify", OPTIONAL, dig_config_text, identify_fields),
+    ACROSS("publish", OPTIONAL, dig_config_text, publish_fields),
     CYAML_FIELD_END,
 };
 
-const cyaml_schema_value_t dig_config_schema = { CYAML_VALUE_MAPPING(
-    POINTER, struct dig_config_text, config_fields) };
-
-const char *dig_input_kind_name(const enum dig_input_kind kind)
-{
-    for (size_t i = 0; i < CYAML_ARRAY_LEN(kinds); i++) {
-        if (kinds[i].val == (int64_t)kind) {
-            return kinds[i].str;
-        }
-    }
-    return "";
-}
+const cyaml_schema_value_t dig_config_schema = FILE_OF(dig_config_text, fields);
