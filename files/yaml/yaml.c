@@ -139,3 +139,17 @@ enum dig_status dig_yaml_refuse_checked(const char *const path, const enum dig_s
     const int line = nearest_line(path, key, &at);
     return dig_error_set(error, status, "%s:%d: %.400s", path, line > 0 ? line : 1, what.text);
 }
+
+enum dig_status dig_yaml_check_ranges(const char *const path, const char *const at,
+                                      const size_t count, const struct dig_yaml_range range[],
+                                      struct dig_error *const error)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!(range[i].value >= range[i].least && range[i].value <= range[i].most)) {
+            return dig_yaml_refuse(path, error, "%s%s%s: %g, expected %g … %g", at,
+                                   at[0] == '\0' ? "" : ".", range[i].key, range[i].value,
+                                   range[i].least, range[i].most);
+        }
+    }
+    return DIG_OK;
+}

@@ -24,6 +24,17 @@ int dig_yaml_line(const char *path, const char *key);
 __attribute__((format(printf, 3, 4))) enum dig_status
 dig_yaml_refuse(const char *path, struct dig_error *error, const char *format, ...);
 
+/// A number of a file, and what it may be.
+struct dig_yaml_range {
+    const char *key;
+    double      value, least, most;
+};
+
+/// Refuses the first that is out of its range. at: the key they stand in, "messages[3]"; "": none.
+DIG_MUST_CHECK enum dig_status dig_yaml_check_ranges(const char *path, const char *at, size_t count,
+                                                     const struct dig_yaml_range range[],
+                                                     struct dig_error           *error);
+
 /// Passes on what a check in core/ found, likewise. Returns status. found and error may be the same
 /// struct.
 enum dig_status dig_yaml_refuse_checked(const char *path, enum dig_status status,

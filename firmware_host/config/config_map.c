@@ -12,20 +12,24 @@
 #include <stdio.h>
 #include <string.h>
 
-static enum dig_status find_register(const struct dig_config_map_work *const work,
-                                     const char *const at, const unsigned *const reg,
-                                     struct dig_map_entry *const entry)
+// Where a value lies on the map's bus.
+static enum dig_status find_place(const struct dig_config_map_work *const work,
+                                  const char *const at, const struct dig_signal_text *const text,
+                                  struct dig_map_entry *const entry)
 {
-    if (reg == NULL) {
+    if (work->map->kind == DIG_MAP_CAN) {
+        return dig_config_map_find_can(work, at, text->message, text->signal, entry);
+    }
+    if (text->reg == NULL) {
         return dig_yaml_refuse(
             work->path, work->error,
             "%s.register: missing, expected the register's address, counted from 0", at);
     }
-    if (*reg > 0xFFFF || *reg + dig_register_words(entry->type) > 0x10000) {
+    if (*text->reg > 0xFFFF || *text->reg + dig_register_words(entry->type) > 0x10000) {
         return dig_yaml_refuse(work->path, work->error, "%s.register: %u, expected 0 … 65535", at,
-                               *reg);
+                               *text->reg);
     }
-    entry->reg = *reg;
+    entry->reg = *text->reg;
     return DIG_OK;
 }
 
@@ -54,37 +58,22 @@ static enum dig_status read_signal(const struct dig_config_map_work *const work,
         return dig_yaml_refuse(work->path, work->error, "%s.sign: %d, expected 1 or -1", at,
                                text->sign);
     }
-    if (!(text->min < text->max)) {
+    struct dig_map_entry entry = text->entry;
+    if (!(entry.min < entry.max)) {
         return dig_yaml_refuse(work->path, work->error, "%s.max: %g, expected more than min %g", at,
-                               text->max, text->min);
+                               entry.max, entry.min);
     }
-    if (!(text->max_rate >= 0.0)) {
+    if (!(entry.max_rate >= 0.0)) {
         return dig_yaml_refuse(work->path, work->error, "%s.max_rate: %g, expected 0 (any) or more",
-                               at, text->max_rate);
+                               at, entry.max_rate);
     }
-    const bool           scale_given = fabs(text->scale) > 0.0;
-    struct dig_map_entry entry       = {
-              .used          = true,
-              .type          = text->type,
-              .sign          = text->sign < 0 ? -1.0 : 1.0,
-              .scale         = scale_given ? text->scale : 1.0,
-              .offset        = text->offset,
-              .max_rate      = text->max_rate,
-              .min           = text->min,
-              .max           = text->max,
-              .not_available = text->not_available_count,
-    };
-    for (size_t i = 0; i < entry.not_available; i++) {
-        entry.not_available_raw[i] = text->not_available[i];
-    }
-    enum dig_status status;
-    if (work->map->kind == DIG_MAP_CAN) {
-        status = dig_config_map_find_can(work, at, text->message, text->signal, &entry);
-        if (status == DIG_OK) {
-            status = dig_config_map_check_unit(work, at, (size_t)signal, &entry, scale_given);
-        }
-    } else {
-        status = find_register(work, at, text->reg, &entry);
+    const bool scale_given = fabs(entry.scale) > 0.0;
+    entry.used             = true;
+    entry.sign             = text->sign < 0 ? -1.0 : 1.0;
+    entry.scale            = scale_given ? entry.scale : 1.0;
+    enum dig_status status = find_place(work, at, text, &entry);
+    if (status == DIG_OK && work->map->kind == DIG_MAP_CAN) {
+        status = dig_config_map_check_unit(work, at, (size_t)signal, &entry, scale_given);
     }
     if (status == DIG_OK) {
         work->map->entry[signal] = entry;
@@ -93,30 +82,33 @@ static enum dig_status read_signal(const struct dig_config_map_work *const work,
 }
 
 static enum dig_status read_alive(const struct dig_config_map_work *const work,
-                                  const struct dig_alive_text *const      text)
+                                  const struct dig_signal_text *const     text)
 {
-    struct dig_map_entry entry = { .used = true, .type = text->type, .sign = 1.0, .scale = 1.0 };
-    enum dig_status      status =
-        work->map->kind == DIG_MAP_CAN
-                 ? dig_config_map_find_can(work, "alive", text->message, text->signal, &entry)
-                 : find_register(work, "alive", text->reg, &entry);
-    if (status == DIG_OK && !(text->frozen_ms >= 0.0 && text->frozen_ms <= 60e3)) {
-        status = dig_yaml_refuse(work->path, work->error, "alive.frozen_ms: %g, expected 0 … 60000",
-                                 text->frozen_ms);
-    }
-    if (status == DIG_OK) {
-        work->map->has_alive = true;
-        work->map->alive     = entry;
-        work->map->frozen_s  = text->frozen_ms > 0.0 ? text->frozen_ms * 1e-3 : 0.5;
-    }
-    return status;
+    const struct dig_yaml_range  frozen = { "frozen_ms", text->frozen_ms, 0.0, 60e3 };
+    struct dig_signal_map *const map    = work->map;
+
+    map->has_alive   = true;
+    map->alive       = text->entry;
+    map->alive.used  = true;
+    map->alive.sign  = 1.0;
+    map->alive.scale = 1.0;
+    map->frozen_s    = text->frozen_ms > 0.0 ? text->frozen_ms * 1e-3 : 0.5;
+
+    const enum dig_status status = find_place(work, "alive", text, &map->alive);
+    return status == DIG_OK ? dig_yaml_check_ranges(work->path, "alive", 1, &frozen, work->error)
+                            : status;
 }
 
 // Checks the keys of the map that do not depend on its signals.
 static enum dig_status check_map(const struct dig_config_map_work *const work,
                                  const struct dig_map_text *const        text)
 {
-    if (text->kind == DIG_MAP_CAN && work->dbc == NULL) {
+    const struct dig_signal_map *const map     = work->map;
+    const struct dig_yaml_range        range[] = {
+               { "coherent_ms", map->coherent_s, 0.0, 1000.0 },
+               { "stuck_ms", text->stuck_ms != NULL ? *text->stuck_ms : 0.0, 0.0, 60e3 },
+    };
+    if (map->kind == DIG_MAP_CAN && work->dbc == NULL) {
         return dig_yaml_refuse(work->path, work->error,
                                "kind: can, expected modbus for this input");
     }
@@ -125,55 +117,41 @@ static enum dig_status check_map(const struct dig_config_map_work *const work,
             work->path, work->error,
             "function: %u, expected 4 (input registers) or 3 (holding registers)", text->function);
     }
-    if (!(text->coherent_ms >= 0.0 && text->coherent_ms <= 1000.0)) {
-        return dig_yaml_refuse(work->path, work->error, "coherent_ms: %g, expected 0 … 1000",
-                               text->coherent_ms);
+    const enum dig_status status = dig_yaml_check_ranges(work->path, "", 2, range, work->error);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (text->stuck_ms != NULL && !(*text->stuck_ms >= 0.0 && *text->stuck_ms <= 60e3)) {
-        return dig_yaml_refuse(work->path, work->error, "stuck_ms: %g, expected 0 … 60000",
-                               *text->stuck_ms);
-    }
-    if (text->kind == DIG_MAP_CAN && text->blocks_count > 0) {
+    if (map->kind == DIG_MAP_CAN && map->groups > 0) {
         return dig_yaml_refuse(work->path, work->error,
                                "blocks: given for can, expected with kind: modbus only");
     }
-    if (text->kind != DIG_MAP_CAN && (text->messages_count > 0 || text->j1939)) {
+    if (map->kind != DIG_MAP_CAN && (text->messages_count > 0 || map->j1939)) {
         return dig_yaml_refuse(work->path, work->error,
                                "%s: given for modbus, expected with kind: can only",
-                               text->j1939 ? "j1939" : "messages");
+                               map->j1939 ? "j1939" : "messages");
     }
     return DIG_OK;
 }
 
-static enum dig_status read_block(const struct dig_config_map_work *const work, const size_t index,
-                                  const struct dig_block_text *const text, const unsigned function,
-                                  struct dig_map_group *const group)
+// Checks a block, and what it says in the file's units becomes what the map keeps.
+static enum dig_status take_block(const struct dig_config_map_work *const work, const size_t index,
+                                  const unsigned function, struct dig_map_group *const block)
 {
-    const struct {
-        const char *key;
-        double      value, low, high;
-    } ranges[] = {
-        { "register", *text->reg, 0.0, 65535.0 },
-        { "registers", text->registers, 1.0, fmin(DIG_REGISTERS_MAX, 65536.0 - *text->reg) },
-        { "function", text->function, text->function == 0 ? 0.0 : 3.0, 4.0 },
-        { "poll_Hz", text->poll_Hz, fabs(text->poll_Hz) > 0.0 ? 0.01 : 0.0, 1000.0 },
-        { "delay_ms", text->delay_ms, 0.0, 1000.0 },
+    char                        at[32];
+    const double                first   = block->first_register;
+    const struct dig_yaml_range range[] = {
+        { "register", first, 0.0, 65535.0 },
+        { "registers", block->registers, 1.0, fmin(DIG_REGISTERS_MAX, 65536.0 - first) },
+        { "function", block->function, block->function == 0 ? 0.0 : 3.0, 4.0 },
+        { "poll_Hz", block->poll_s, fabs(block->poll_s) > 0.0 ? 0.01 : 0.0, 1000.0 },
+        { "delay_ms", block->frame.delay_s, 0.0, 1000.0 },
     };
-    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
-        if (!(ranges[i].value >= ranges[i].low && ranges[i].value <= ranges[i].high)) {
-            return dig_yaml_refuse(work->path, work->error, "blocks[%zu].%s: %g, expected %g … %g",
-                                   index, ranges[i].key, ranges[i].value, ranges[i].low,
-                                   ranges[i].high);
-        }
-    }
-    *group = (struct dig_map_group){
-        .first_register = *text->reg,
-        .registers      = text->registers,
-        .function       = text->function != 0 ? text->function : function,
-        .poll_s         = text->poll_Hz > 0.0 ? 1.0 / text->poll_Hz : 0.0,
-        .frame          = { .delay_s = text->delay_ms * 1e-3 },
-    };
-    return DIG_OK;
+    (void)snprintf(at, sizeof at, "blocks[%zu]", index);
+    block->function = block->function != 0 ? block->function : function;
+    block->poll_s   = block->poll_s > 0.0 ? 1.0 / block->poll_s : 0.0;
+    block->frame.delay_s *= 1e-3;
+    return dig_yaml_check_ranges(work->path, at, sizeof range / sizeof range[0], range,
+                                 work->error);
 }
 
 // Reads the blocks of a Modbus map, every register within one; plans them where there are none.
@@ -182,13 +160,13 @@ static enum dig_status read_blocks(const struct dig_config_map_work *const work,
 {
     struct dig_signal_map *const map      = work->map;
     const unsigned               function = text->function == 3 ? 3 : 4;
-    if (text->blocks_count == 0) {
+    if (map->groups == 0) {
         dig_register_plan(map, function);
         return DIG_OK;
     }
     enum dig_status status = DIG_OK;
-    for (unsigned i = 0; status == DIG_OK && i < text->blocks_count; i++) {
-        status = read_block(work, i, &text->blocks[i], function, &map->group[map->groups++]);
+    for (size_t i = 0; status == DIG_OK && i < map->groups; i++) {
+        status = take_block(work, i, function, &map->group[i]);
     }
     for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
         if (!dig_register_assign(map, &map->entry[dig_signal_find(text->signals[i].name)])) {
@@ -253,13 +231,10 @@ static enum dig_status read_map(const struct dig_config_map_work *const work,
     if (status != DIG_OK) {
         return status;
     }
-    map->kind           = text->kind;
-    map->low_word_first = text->low_word_first;
-    map->j1939          = text->j1939;
-    map->stuck_s        = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 0.5;
-    map->coherent_s     = text->coherent_ms > 0.0     ? text->coherent_ms * 1e-3
-                          : text->kind == DIG_MAP_CAN ? 6e-3
-                                                      : coherent_polls_s;
+    map->stuck_s    = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 0.5;
+    map->coherent_s = map->coherent_s > 0.0      ? map->coherent_s * 1e-3
+                      : map->kind == DIG_MAP_CAN ? 6e-3
+                                                 : coherent_polls_s;
 
     for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
         status = read_signal(work, i, &text->signals[i]);
@@ -294,11 +269,12 @@ enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_signal_map            loaded = { 0 };
+    const struct dig_map_text *const text   = data;
+    struct dig_signal_map            loaded = text->map;
     const struct dig_config_map_work work   = {
           .path = path, .dbc = dbc, .map = &loaded, .error = error
     };
-    status = read_map(&work, (const struct dig_map_text *)data);
+    status = read_map(&work, text);
     dig_yaml_free(&dig_map_schema, data);
     if (status == DIG_OK) {
         *map = loaded;

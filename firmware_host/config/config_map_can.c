@@ -195,20 +195,16 @@ enum dig_status dig_config_map_read_message(const struct dig_config_map_work *co
             "%s.message: \"%s\", expected a message that carries one of the signals", at,
             text->message);
     }
-    struct dig_map_group *const group = &work->map->group[known];
-    if (!(text->delay_ms >= 0.0 && text->delay_ms <= 1000.0)) {
-        return dig_yaml_refuse(work->path, work->error, "%s.delay_ms: %g, expected 0 … 1000", at,
-                               text->delay_ms);
-    }
-    if (!(text->cycle_ms >= 0.0 && text->cycle_ms <= 60e3)) {
-        return dig_yaml_refuse(work->path, work->error, "%s.cycle_ms: %g, expected 0 … 60000", at,
-                               text->cycle_ms);
-    }
+    struct dig_map_group *const group   = &work->map->group[known];
+    const struct dig_yaml_range range[] = {
+        { "delay_ms", text->delay_ms, 0.0, 1000.0 },
+        { "cycle_ms", text->cycle_ms, 0.0, 60e3 },
+    };
     group->frame.delay_s = text->delay_ms * 1e-3;
     group->frame.cycle_s = text->cycle_ms > 0.0 ? text->cycle_ms * 1e-3 : group->frame.cycle_s;
 
-    enum dig_status status = DIG_OK;
-    if (text->counter != NULL) {
+    enum dig_status status = dig_yaml_check_ranges(work->path, at, 2, range, work->error);
+    if (status == DIG_OK && text->counter != NULL) {
         status =
             find_frame_signal(work, at, "counter", text->message, text->counter, &group->counter);
         group->frame.counter_mod = group->counter.bits > 0 && group->counter.bits < 32

@@ -7,12 +7,16 @@
 
 #include <cyaml/cyaml.h>
 
+// What the map keeps as it stands is where the map has it, in the file's units, 0 where absent.
 // Pointers: NULL where a key is absent.
-struct dig_alive_text {
-    char                  *message, *signal;
-    unsigned              *reg;
-    enum dig_register_type type;
-    double                 frozen_ms;
+
+/// A signal, or the alive counter, which has no name.
+struct dig_signal_text {
+    struct dig_map_entry entry;
+    char                *name, *message, *signal;
+    unsigned            *reg;
+    int                  sign;
+    double               frozen_ms; // of the alive counter
 };
 
 struct dig_checksum_text {
@@ -26,33 +30,13 @@ struct dig_message_text {
     struct dig_checksum_text *checksum;
 };
 
-struct dig_block_text {
-    unsigned *reg;
-    unsigned  registers, function;
-    double    poll_Hz, delay_ms;
-};
-
-struct dig_signal_text {
-    char                  *name, *message, *signal;
-    unsigned              *reg;
-    enum dig_register_type type;
-    int                    sign;
-    double                 scale, offset, min, max, max_rate;
-    uint64_t              *not_available;
-    unsigned               not_available_count;
-};
-
 struct dig_map_text {
-    enum dig_map_kind        kind;
+    struct dig_signal_map    map; // its groups are the blocks
     unsigned                 function;
-    bool                     low_word_first, j1939;
-    double                   coherent_ms;
     double                  *stuck_ms;
-    struct dig_alive_text   *alive;
+    struct dig_signal_text  *alive;
     struct dig_message_text *messages;
     unsigned                 messages_count;
-    struct dig_block_text   *blocks;
-    unsigned                 blocks_count;
     struct dig_signal_text  *signals;
     unsigned                 signals_count;
 };
