@@ -36,10 +36,9 @@ struct dig_linkage_pose {
 /// Nothing to refuse where a force sensor carries the bucket: it has no linkage.
 ///
 /// DIG_EUNREACHABLE unless the four-bar closes with margin over the bucket's whole range, and boom
-/// and arm cylinders have some length there; *error names the angle. Call once, after
-/// dig_machine_check(): the solvers trust the geometry. About a millisecond.
-DIG_MUST_CHECK enum dig_status dig_linkage_check(const struct dig_machine *machine,
-                                                 struct dig_error         *error);
+/// and arm cylinders have some length there; of a file dig_geometry_check() says where not. Call
+/// once, after dig_machine_check(): the solvers trust the geometry. About a millisecond.
+DIG_MUST_CHECK enum dig_status dig_linkage_check(const struct dig_machine *machine);
 
 /// Solves the four-bar at bucket_rad (against the arm), with M on the +y side of the line from N to
 /// K. DIG_EINVAL if the angle is not finite, DIG_EUNREACHABLE if the bars cannot close or stand

@@ -50,7 +50,7 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
         dig_machine_check(machine, NULL) != DIG_OK || !set_is_sound(set)) {
         return DIG_EINVAL;
     }
-    const enum dig_status closes = dig_linkage_check(machine, NULL);
+    const enum dig_status closes = dig_linkage_check(machine);
     if (closes != DIG_OK) {
         return closes;
     }

@@ -103,7 +103,7 @@ enum dig_status dig_correction_check(const struct dig_machine *const    machine,
     const struct dig_machine made   = dig_correction_machine(machine, correction);
     enum dig_status          status = dig_machine_check(&made, NULL);
     if (status == DIG_OK) {
-        status = dig_linkage_check(&made, NULL);
+        status = dig_linkage_check(&made);
     }
     return status;
 }

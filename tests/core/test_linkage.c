@@ -6,8 +6,6 @@
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 
-#include <string.h>
-
 static struct dig_lever solve(const struct dig_machine *const machine, const enum dig_joint joint,
                               const double at_rad)
 {
@@ -94,10 +92,7 @@ TEST(poses_that_cannot_be_are_refused_and_write_nothing)
 TEST(check_refuses_a_linkage_that_does_not_close_over_its_range)
 {
     struct dig_machine machine = model_machine();
-    struct dig_error   error;
-    assert_int_equal(dig_linkage_check(&machine, &error), DIG_OK);
+    assert_int_equal(dig_linkage_check(&machine), DIG_OK);
     machine.four_bar.link_m = 0.2; // too short where the ear points back
-    assert_int_equal(dig_linkage_check(&machine, &error), DIG_EUNREACHABLE);
-    assert_non_null(strstr(error.text, "bucket"));
-    assert_int_equal(dig_linkage_check(&machine, NULL), DIG_EUNREACHABLE);
+    assert_int_equal(dig_linkage_check(&machine), DIG_EUNREACHABLE);
 }
