@@ -74,17 +74,23 @@ static inline struct bench *bench_of_two_digs(void)
     return b;
 }
 
-/// A dig in one of the gravels, its moment times a factor.
-static inline void bench_dig(struct bench *const b, const int gravel, const int trajectory,
-                             const double factor)
+/// A simple dig in one of the gravels, its moment times a factor.
+static inline struct dig_observation bench_observation(const int gravel, const double factor)
 {
-    struct dig_observation dig = {
-        .dig_count = 5, .trajectory = trajectory, .first = 0.0, .last = 1.0
-    };
+    struct dig_observation dig = { .dig_count = 5, .trajectory = 0, .first = 0.0, .last = 1.0 };
     for (int p = 0; p < DIG_CURVE_POINTS; p++) {
         dig.moment_Nm[p] = factor * bench_moment_Nm(gravel, p);
         dig.sigma_Nm[p]  = 0.005;
     }
+    return dig;
+}
+
+/// The matcher takes such a dig, along one of the trajectories.
+static inline void bench_dig(struct bench *const b, const int gravel, const int trajectory,
+                             const double factor)
+{
+    struct dig_observation dig = bench_observation(gravel, factor);
+    dig.trajectory             = trajectory;
     dig_fit_take(&b->fit, &dig);
 }
 

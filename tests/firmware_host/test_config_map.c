@@ -135,9 +135,7 @@ TEST(defects_are_refused_with_file_line_and_key)
         struct dig_error      error = { "" };
         assert_int_equal(dig_signal_map_read(scratch_write("bad.yaml", text), NULL, &map, &error),
                          DIG_EINVAL);
-        if (strstr(error.text, cases[i].expected) == NULL) {
-            fail_msg("case %zu: \"%s\" lacks \"%s\"", i, error.text, cases[i].expected);
-        }
+        assert_contains(error.text, cases[i].expected);
         assert_int_equal(map.groups, 42);
     }
 }
@@ -247,9 +245,7 @@ static void check_can(const char *const entry, const char *const expected)
     struct dig_error      error = { "" };
     assert_int_equal(dig_signal_map_read(scratch_write("bad.yaml", text), &dbc, &map, &error),
                      DIG_EINVAL);
-    if (strstr(error.text, expected) == NULL) {
-        fail_msg("\"%s\" lacks \"%s\"", error.text, expected);
-    }
+    assert_contains(error.text, expected);
     assert_int_equal(map.groups, 42);
     dig_dbc_finish(&dbc);
 }

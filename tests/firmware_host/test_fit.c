@@ -56,13 +56,10 @@ TEST(a_dig_the_table_has_no_curve_for_is_said_and_matches_nothing)
 TEST(a_dig_broken_off_leaves_what_is_known)
 {
     struct bench *const    b   = bench_create();
-    struct dig_observation dig = { .dig_count = 6, .trajectory = 0, .first = 0.0 };
-    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-        dig.moment_Nm[p] = bench_moment_Nm(7, p);
-        dig.sigma_Nm[p]  = 0.005;
-    }
+    struct dig_observation dig = bench_observation(7, 1.0);
     bench_dig(b, 3, 0, 1.0);
-    dig.last = 0.59;
+    dig.dig_count = 6;
+    dig.last      = 0.59;
     dig_fit_take(&b->fit, &dig);
     assert_int_equal(b->fit.track.match.dig_count, 5);
     struct dig_log_line note;
@@ -80,12 +77,9 @@ TEST(how_digs_ended_is_told_and_changes_no_number)
 {
     struct bench *const    b    = bench_create();
     struct bench *const    same = bench_create();
-    struct dig_observation dig  = { .dig_count = 1, .trajectory = 0, .last = 0.7 };
+    struct dig_observation dig  = bench_observation(5, 1.0);
     struct dig_log_line    note;
-    for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-        dig.moment_Nm[p] = bench_moment_Nm(5, p);
-        dig.sigma_Nm[p]  = 0.005;
-    }
+    dig.last = 0.7;
     dig_fit_take(&same->fit, &dig);
     assert_int_equal(same->fit.track.ending, DIG_ENDING_OPEN);
     assert_false(dig_latest_take(&same->wires.log, &note));
@@ -93,7 +87,7 @@ TEST(how_digs_ended_is_told_and_changes_no_number)
     dig.ending = DIG_ENDING_ABORTED;
     dig_fit_take(&b->fit, &dig);
     assert_true(dig_latest_take(&b->wires.log, &note));
-    assert_string_equal(note.text, "dig 1 (simpleA): aborted at 70 % of its path");
+    assert_string_equal(note.text, "dig 5 (simpleA): aborted at 70 % of its path");
     assert_int_equal(b->fit.track.ending, DIG_ENDING_ABORTED);
     assert_close(b->fit.track.path_measured, 0.7, 0.0);
     for (int a = 0; a < DIG_AXES; a++) {
@@ -104,7 +98,7 @@ TEST(how_digs_ended_is_told_and_changes_no_number)
     dig.trajectory = 1;
     dig_fit_take(&b->fit, &dig);
     assert_true(dig_latest_take(&b->wires.log, &note));
-    assert_string_equal(note.text, "dig 1 (actual): aborted at 50 % of its path");
+    assert_string_equal(note.text, "dig 5 (actual): aborted at 50 % of its path");
     dig.trajectory = 0;
     dig_fit_take(&b->fit, &dig);
     assert_true(dig_latest_take(&b->wires.log, &note));

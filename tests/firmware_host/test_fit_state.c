@@ -163,10 +163,9 @@ static void give_forces(struct bench *const b)
 // A dig in one of the gravels, with its forces.
 static void dig_with_forces_in(struct bench *const b, const int gravel, const double factor)
 {
-    struct dig_observation dig = { .dig_count = 5, .last = 1.0, .forces = true };
+    struct dig_observation dig = bench_observation(gravel, factor);
+    dig.forces                 = true;
     for (int p = 0; p < DIG_CURVE_POINTS; p++) {
-        dig.moment_Nm[p] = factor * bench_moment_Nm(gravel, p);
-        dig.sigma_Nm[p]  = 0.005;
         for (int c = 0; c < 2; c++) {
             dig.force_N[c][p]       = (double)b->cube.curve[gravel * TRAJECTORIES].mean[1 + c][p];
             dig.force_sigma_N[c][p] = 0.02 + 0.001 * c;
