@@ -43,6 +43,10 @@ is() { # VALUE WANTED
     [ "$1" = "$2" ] || { echo "      \"$1\" instead of \"$2\""; return 1; }
 }
 
+is_json() { # standard input: one JSON value and nothing else
+    cat >"$work/json" && is "$(sqlite3 :memory: "SELECT json_valid(CAST(readfile('$work/json') AS TEXT))")" 1
+}
+
 within() { # VALUE LOW HIGH
     awk -v v="$1" -v low="$2" -v high="$3" 'BEGIN { exit !(v != "" && v >= low && v <= high) }'
 }

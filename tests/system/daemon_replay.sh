@@ -155,7 +155,7 @@ check "digloop identifies from such a recording, too" \
 check "digreport finds the dig that identified and the one that was predicted" [ $? = 0 ]
 check "and that the prediction was right" \
     within "$(sed -nE 's/.*"error":([0-9.e-]+),.*/\1/p' "$work/page.json")" 0 0.1
-check "its table is for people, its JSON for programs" eval '[ ! -s "$work/report.txt" ] && [ -s "$work/report.err" ] && "$helpers/is_json" <"$work/page.json"'
+check "its table is for people, its JSON for programs" eval '[ ! -s "$work/report.txt" ] && [ -s "$work/report.err" ] && is_json <"$work/page.json"'
 check "that it identified by moment and forces" grep -q "simpleA identified the gravel by moment and forces, then actual" "$work/report.err" "$work/page.html"
 check "on a page with both curves" [ "$(grep -c '<svg' "$work/page.html")" = 2 ]
 shift_of() { "$BIN/digreport" shift "$@" >"$work/shift.txt" 2>"$work/err"; }
@@ -177,7 +177,7 @@ rig_peak=$(field rig_peak_Nm 2) peak=$(field peak_Nm 2)
 check "from the logs alone it makes both, at machine scale" eval 'shift_of --html "$work/alone.html" --csv "$work/shift.csv" "$work/csv.lcm" "$work/aborts.lcm" &&
     grep -q "All at machine scale" "$work/alone.html" && [ -z "$(field rig_peak_Nm 2)" ] && [ -n "$rig_peak" ] &&
     within "$(awk -v a="$(field peak_Nm 2)" -v b="$peak" "BEGIN { print a / b }")" 0.99 1.01'
-check "and JSON, what people read going to standard error" eval 'shift_of --json - "$work/csv.lcm" && "$helpers/is_json" <"$work/shift.txt" &&
+check "and JSON, what people read going to standard error" eval 'shift_of --json - "$work/csv.lcm" && is_json <"$work/shift.txt" &&
     grep -q "^2 digs in" "$work/err"'
 for args in "" --json=-; do
     check "a page that cannot be drawn leaves nothing${args:+, nor other results}" eval '! PATH=/nonexistent shift_of --html "$work/no.html" $args "$work/csv.lcm" &&

@@ -32,8 +32,7 @@ check "the curve may go to standard output, alone" cmp -s "$work/next.csv" "$wor
 check "but not into other results" refuses "two results on standard output" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o - --json
 # Every result for a program is one JSON value, and there is nothing else where a script reads it.
-is_json=$BIN/../tests/system/is_json
-gives_json() { "$BIN/$1" "${@:2}" --json 2>"$work/err" | "$is_json"; }
+gives_json() { "$BIN/$1" "${@:2}" --json 2>"$work/err" | is_json; }
 json() { check "$1 $2 --json is JSON" gives_json "$@"; } # TOOL ARGUMENT…
 json digloop identify "$table" "$reference"__simpleA.csv
 json digloop predict "$table" --identified "$work/id.json" --trajectory actual --measured "$reference"__actual.csv

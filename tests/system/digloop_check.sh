@@ -31,7 +31,7 @@ run_check "$machine" "$work/turned.csv" --json "$work/turned.json" --html "$work
 check "an angle that counts down ends with 2" is "$status" 2
 check "and is named" said '^wrong *boom angle counts up *no: it counts down'
 check "with what to do" said 'sign: -1 of boom_rad'
-check "the JSON is JSON" eval '"$BIN/../tests/system/is_json" <"$work/turned.json"'
+check "the JSON is JSON" eval 'is_json <"$work/turned.json"'
 check "the page has six pictures" is "$(grep -c '<figure>' "$work/turned.html")" 6
 check "and names no folder" is "$(grep -c "$work" "$work/turned.html")" 0
 run_check "$machine" "$work/turned.csv" --json - --quiet

@@ -3,7 +3,6 @@
 # terminal it is told on, none runs, none is markup in a page.
 . tests/system/check.bash
 BIN=$(realpath "$BIN")
-is_json=$BIN/../tests/system/is_json
 formats=$PWD/tests/data/formats
 machine=$PWD/config/machines/zx200_trench.yaml
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
@@ -48,7 +47,7 @@ told "and imported" 0 digtable import "curves$bad.csv" --map "$formats/curve_map
 told "identified" 0 digloop identify "rig$bad.sqlite" "$bad.csv" --json
 cp "$work/out" "id$bad.json"
 told "predicted" 0 digloop predict "rig$bad.sqlite" --identified "id$bad.json" --trajectory actual -o "p$bad.csv"
-check "the gravel is JSON" eval '"$is_json" <"id$bad.json"'
+check "the gravel is JSON" eval 'is_json <"id$bad.json"'
 told "read from a log" 0 digreport shift "$bad.lcm" --csv "shift$bad.csv" --json "shift$bad.json" --html "shift$bad.html" --title "$bad"
 check "a page holds no markup of a title" eval '! grep -qa "<blink>" "shift$bad.html"'
 told "a log that is none" 1 digreport "$bad=$bad.lcm" --table "rig$bad.sqlite" --machine "$bad.yaml" --html page.html
@@ -72,7 +71,7 @@ recordings:
 END
 told "a campaign is traced" 0 digloop trace "rig$bad.sqlite" "$bad" --html "t$bad.html" --json "t$bad.json" --add "m$bad.json"
 check "its page has no markup of its names" eval '! grep -qa "<blink>" "t$bad.html" && grep -qa "&lt;blink&gt;" "t$bad.html"'
-check "its results are JSON" eval '"$is_json" <"t$bad.json" && "$is_json" <"m$bad.json"'
+check "its results are JSON" eval 'is_json <"t$bad.json" && is_json <"m$bad.json"'
 told "its model is read" 0 digloop identify "rig$bad.sqlite" "$bad.csv" --model "m$bad.json"
 for word in '\e[2J' '\u202e' '\n' '\x7f' '\x9b'; do
     sed -i "0,/file: \"[^}]*csv\"/s//file: \"a${word//\\/\\\\}.csv\"/" "$bad/campaign.yaml"
