@@ -84,12 +84,4 @@ static inline int scratch_exists(const char *const name)
     return access(scratch_path(name), F_OK) == 0;
 }
 
-/// text contains part.
-#define assert_contains(text, part)                                                                \
-    do {                                                                                           \
-        if (strstr((text), (part)) == NULL) {                                                      \
-            fail_msg("\"%s\" does not contain \"%s\"", (text), (part));                            \
-        }                                                                                          \
-    } while (0)
-
 #endif // DIG_TESTS_SCRATCH_H

@@ -88,9 +88,7 @@ static inline struct dig_store *fixture_create_of(const char *const             
 {
     struct dig_store *store = NULL;
     struct dig_error  error = { "" };
-    if (dig_store_create(scratch_path(name), scene, &store, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_create(scratch_path(name), scene, &store, &error), error);
     return store;
 }
 
@@ -116,9 +114,7 @@ static inline void fixture_put_run(struct dig_store *const     store,
     const struct dig_recording recording =
         fixture_recording(origin.trajectory == 0 ? 400 : 200, my_Nm);
     struct dig_error error = { "" };
-    if (dig_store_put(store, &origin, &recording, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_put(store, &origin, &recording, &error), error);
 }
 
 static inline void fixture_put(struct dig_store *const store, const double friction,
@@ -133,9 +129,7 @@ static inline struct dig_curve_set *fixture_load(const char *const name)
 {
     struct dig_curve_set *set   = NULL;
     struct dig_error      error = { "" };
-    if (dig_table_load(scratch_path(name), &set, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_table_load(scratch_path(name), &set, &error), error);
     return set;
 }
 

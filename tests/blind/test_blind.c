@@ -18,9 +18,7 @@ static struct dig_machine machine(void)
 {
     struct dig_machine m;
     struct dig_error   error = { "" };
-    if (dig_machine_read(MACHINE, &m, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(MACHINE, &m, &error), error);
     return m;
 }
 
@@ -206,9 +204,7 @@ TEST(a_verdict_is_read_from_the_documented_json)
 {
     struct blind_verdict v;
     struct dig_error     error = { "" };
-    if (blind_verdict_read("tests/data/formats/trace.json", &v, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(blind_verdict_read("tests/data/formats/trace.json", &v, &error), error);
     assert_true(v.significant);
     assert_int_equal(v.names, 2);
     assert_string_equal(v.name[0], "cylinder_friction");
@@ -274,10 +270,8 @@ TEST(the_pool_holds_whole_beds_of_known_gravel)
     struct blind_pool pool  = { 0, NULL };
     struct blind_pool more  = { 0, NULL };
     struct dig_error  error = { "" };
-    if (blind_pool_read("tests/data", false, &pool, &error) != DIG_OK ||
-        blind_pool_read("tests/data", true, &more, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(blind_pool_read("tests/data", false, &pool, &error), error);
+    assert_ok(blind_pool_read("tests/data", true, &more, &error), error);
     assert_true(more.groups > pool.groups);
     blind_pool_finish(&more);
     size_t plain = 0;

@@ -252,10 +252,9 @@ static inline struct campaign *trace(const struct fault *const fault, const uint
         c->measured[d].use        = d == DIGS - 1 ? DIG_USE_HOLDOUT : DIG_USE_FIT;
         c->measured[d].order      = d;
     }
-    if (dig_machine_side_create(&machine, set, DIGS, c->recording, c->measured, &c->side, &error) !=
-        DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(
+        dig_machine_side_create(&machine, set, DIGS, c->recording, c->measured, &c->side, &error),
+        error);
     assert_int_equal(dig_machine_side_trace(c->side, 0.01, seed, &c->finding), DIG_OK);
     return c;
 }

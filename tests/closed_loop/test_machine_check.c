@@ -38,9 +38,7 @@ static struct dig_machine_air_check run(const struct dig_machine *const         
 {
     struct dig_machine_air_check check;
     struct dig_error             error = { "" };
-    if (dig_machine_air_check_run(file, recording, &check, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_air_check_run(file, recording, &check, &error), error);
     return check;
 }
 
@@ -225,11 +223,10 @@ TEST(a_recording_with_a_dig_in_it_is_explained_by_nothing)
     how.placed                         = true;
     how.pin_X_m                        = 7.43;
     how.pin_Z_m                        = -0.62;
-    if (dig_recording_read("tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv", &dug, &error) !=
-            DIG_OK ||
-        dig_rig_track_build(&m->machine, &how, 1, &dug, &digs.track, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(
+        dig_recording_read("tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv", &dug, &error),
+        error);
+    assert_ok(dig_rig_track_build(&m->machine, &how, 1, &dug, &digs.track, &error), error);
     struct dig_machine_recording r     = air_record(&m->machine, &digs.track, NULL, 1);
     struct dig_machine_air_check check = run(&m->machine, &r);
     assert_true(check.unexplained);
@@ -284,7 +281,7 @@ TEST(what_cannot_be_checked_is_refused_and_writes_nothing)
     struct dig_error             error = { "" };
     file.sensor.fitted                 = true;
     assert_int_equal(dig_machine_air_check_run(&file, &r, &check, &error), DIG_EINVAL);
-    assert_non_null(strstr(error.text, "force sensor"));
+    assert_contains(error.text, "force sensor");
     const size_t rows = r.rows;
     for (size_t few = 0; few < 50; few += 7) {
         r.rows = few;

@@ -188,9 +188,7 @@ TEST(json_is_read_back_and_holds_every_line)
     char *const      text = written(dig_machine_check_json);
     yaml_document_t  document;
     struct dig_error error = { "" };
-    if (dig_yaml_parse("check.json", text, strlen(text), &document, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_yaml_parse("check.json", text, strlen(text), &document, &error), error);
     int                      found = 0;
     const yaml_node_t *const node  = dig_yaml_find(&document, "verdict", &found);
     assert_string_equal(dig_yaml_text_of(node), "wrong");
@@ -212,9 +210,7 @@ TEST(the_page_escapes_texts_names_no_folder_and_has_a_picture_a_joint)
     FILE *const      to    = open_memstream(&text, &size);
     struct dig_error error = { "" };
     assert_non_null(to);
-    if (dig_machine_check_html(&subject, to, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_check_html(&subject, to, &error), error);
     assert_int_equal(fclose(to), 0);
     assert_non_null(strstr(text, "&lt;my&gt;.yaml"));
     assert_null(strstr(text, "somebody"));

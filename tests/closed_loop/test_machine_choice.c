@@ -11,9 +11,7 @@ static void *load(void)
 {
     struct dig_curve_set *loaded = NULL;
     struct dig_error      error  = { "" };
-    if (dig_table_load(table, &loaded, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_table_load(table, &loaded, &error), error);
     return loaded;
 }
 
@@ -26,10 +24,9 @@ static struct dig_trace traced(const struct fault *const fault, const uint64_t s
     struct campaign                *c;
     set = load();
     c   = trace(fault, seed);
-    if (dig_trace_run(set, table, NULL, &settings, c->side, DIGS, c->measured, &result, &error) !=
-        DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(
+        dig_trace_run(set, table, NULL, &settings, c->side, DIGS, c->measured, &result, &error),
+        error);
     end(c);
     dig_curve_set_destroy(set);
     set = made;

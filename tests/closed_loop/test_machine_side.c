@@ -402,8 +402,8 @@ TEST(a_recording_without_its_dig_is_refused_by_name)
     (void)snprintf(m->name, sizeof m->name, "north.csv");
     m->trajectory = MADE_ACTUAL; // it is simpleA
     assert_int_equal(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), DIG_ENOMATCH);
-    assert_non_null(strstr(error.text, "north.csv"));
-    assert_non_null(strstr(error.text, "actual"));
+    assert_contains(error.text, "north.csv");
+    assert_contains(error.text, "actual");
     assert_null(side);
     r.rows = 30;
     assert_int_equal(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), DIG_EINVAL);

@@ -109,9 +109,7 @@ TEST(every_dig_is_found_and_resists_as_the_force_recording_says)
     struct dig_machine_recording r     = record();
     struct dig_observed_digs     digs  = { .digs = 0 };
     struct dig_error             error = { "" };
-    if (dig_observe_machine(&machine, NULL, set, &r, &digs, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
     expect_both(&digs);
     dig_observed_digs_finish(&digs);
 
@@ -151,7 +149,7 @@ TEST(without_a_dig_it_is_refused_and_nothing_written)
 
     r.rows = 200; // air
     assert_int_equal(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), DIG_ENOMATCH);
-    assert_non_null(strstr(error.text, "digs in it: 0"));
+    assert_contains(error.text, "digs in it: 0");
 
     // Broken off within the first dig: it has not ended.
     r.rows = rows / 4;
@@ -162,7 +160,7 @@ TEST(without_a_dig_it_is_refused_and_nothing_written)
     struct dig_machine broken = machine;
     broken.link[0].length_m   = -1.0;
     assert_int_equal(dig_observe_machine(&broken, NULL, set, &r, &digs, &error), DIG_EINVAL);
-    assert_non_null(strstr(error.text, machine.name));
+    assert_contains(error.text, machine.name);
     assert_int_equal(digs.seen, 42);
     dig_machine_recording_finish(&r);
     dig_observed_digs_finish(NULL);

@@ -121,7 +121,7 @@ TEST(without_gnuplot_it_says_so)
     (void)fclose(to);
     (void)setenv("PATH", path, 1);
     free(path);
-    assert_non_null(strstr(error.text, "gnuplot"));
+    assert_contains(error.text, "gnuplot");
 }
 
 TESTS_WITH(scratch_setup, scratch_teardown)

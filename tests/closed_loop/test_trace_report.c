@@ -189,9 +189,7 @@ static void expect(const char *const text, const char *const key, const char *co
 {
     yaml_document_t  document;
     struct dig_error error = { "" };
-    if (dig_yaml_parse("trace.json", text, strlen(text), &document, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_yaml_parse("trace.json", text, strlen(text), &document, &error), error);
     int                      found = 0;
     const yaml_node_t *const node  = dig_yaml_find(&document, key, &found);
     if (node == NULL || node->type != YAML_SCALAR_NODE) {
@@ -428,9 +426,7 @@ TEST(the_page_stands_alone_and_draws_every_dig)
     struct example *const e     = make();
     const char *const     path  = scratch_path("trace.html");
     struct dig_error      error = { "" };
-    if (write_page(e, path, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(write_page(e, path, &error), error);
     size_t      size = 0;
     char *const page = scratch_read(path, &size);
     assert_contains(page, "pit &lt;7&gt;");

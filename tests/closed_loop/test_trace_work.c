@@ -81,9 +81,7 @@ static void dig_so(const struct dig_approach approach[DIGS])
 static void make_batch(void)
 {
     struct dig_error error = { "" };
-    if (dig_trace_batch(&work, &plain, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_trace_batch(&work, &plain, &error), error);
 }
 
 static void assert_gravel(void)

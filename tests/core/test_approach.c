@@ -5,7 +5,7 @@
 
 #include "core/units.h"
 #include "files/scene_yaml.h"
-#include "tests/scratch.h"
+#include "tests/testlib.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,9 +34,8 @@ static struct dig_trajectory make(const struct dig_scene *const scene, const cha
     const struct dig_approach approach = { depth, attack_deg * DIG_RAD_PER_DEG };
     struct dig_trajectory     made;
     struct dig_error          error = { "" };
-    if (dig_approach_make(scene, dig_scene_find(scene, name), &approach, &made, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_approach_make(scene, dig_scene_find(scene, name), &approach, &made, &error),
+              error);
     return made;
 }
 
@@ -115,8 +114,7 @@ static void refuse(const struct dig_scene *const scene, const struct dig_traject
     struct dig_error          error = { "" };
     memset(&made, 0x5a, sizeof made);
     const struct dig_trajectory before = made;
-    assert_int_equal(dig_approach_make(scene, t, &approach, &made, &error), DIG_EINVAL);
-    assert_contains(error.text, says);
+    assert_refused(dig_approach_make(scene, t, &approach, &made, &error), error, DIG_EINVAL, says);
     assert_memory_equal(&made, &before, sizeof made);
 }
 

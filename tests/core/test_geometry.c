@@ -10,9 +10,7 @@
 static void passes(const struct dig_machine *const machine)
 {
     struct dig_error error = { "untouched" };
-    if (dig_geometry_check(machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_geometry_check(machine, &error), error);
     assert_string_equal(error.text, "untouched");
 }
 
@@ -24,7 +22,7 @@ static void is_refused(const struct dig_machine *const machine, const char *cons
     if (strncmp(error.text, starts_with, strlen(starts_with)) != 0) {
         fail_msg("\"%s\" does not start with \"%s\"", error.text, starts_with);
     }
-    assert_non_null(strstr(error.text, "expected"));
+    assert_contains(error.text, "expected");
 }
 
 TEST(what_could_be_built_passes)

@@ -97,9 +97,7 @@ TEST(nor_does_a_merged_table)
     (void)snprintf(in, sizeof in, "%s", scratch_path("in.sqlite"));
     const char *const input[] = { in };
     lay_link("merged.sqlite.part");
-    if (dig_store_merge(out, 1, input, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_merge(out, 1, input, &error), error);
     assert_kept();
 }
 

@@ -63,9 +63,7 @@ static void expect_similar(const struct dig_scene *const scene)
 {
     const struct dig_scene own = rig();
     struct dig_error       e   = { "" };
-    if (dig_scene_similar(scene, &own, &e) != DIG_OK) {
-        fail_msg("%s", e.text);
-    }
+    assert_ok(dig_scene_similar(scene, &own, &e), e);
 }
 
 static void expect_other(const struct dig_scene *const scene, const char *const key)

@@ -33,9 +33,7 @@ static inline int fresh(void **state)
 static inline void read_log(const char *const name)
 {
     struct dig_error error = { "" };
-    if (digreport_shift_log(&shift, scratch_path(name), &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(digreport_shift_log(&shift, scratch_path(name), &error), error);
 }
 
 static inline lcm_eventlog_t *begin(const char *const name)

@@ -58,9 +58,7 @@ static char *page_of(const struct digreport_shift_subject *const subject)
     size_t           size  = 0;
     FILE *const      to    = fopen(scratch_path("page.html"), "w");
     assert_non_null(to);
-    if (digreport_shift_html(&shift, subject, to, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(digreport_shift_html(&shift, subject, to, &error), error);
     (void)fclose(to);
     return scratch_read(scratch_path("page.html"), &size);
 }

@@ -83,9 +83,7 @@ static struct dig_job_state look(void)
 {
     struct dig_job_state state;
     struct dig_error     error = { "" };
-    if (dig_job_state_read(&folder, &state, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_job_state_read(&folder, &state, &error), error);
     return state;
 }
 

@@ -43,7 +43,7 @@ TEST(what_cannot_be_read_writes_nothing)
     struct dig_error       error  = { "" };
     assert_int_not_equal(dig_plan_read("no.yaml", grid_path, 0, &scene, &plan, &point, &error),
                          DIG_OK);
-    assert_non_null(strstr(error.text, "no.yaml"));
+    assert_contains(error.text, "no.yaml");
     assert_int_not_equal(dig_plan_read(scene_path, scene_path, 0, &scene, &plan, &point, &error),
                          DIG_OK);
     assert_memory_equal(&plan, &before, sizeof plan);

@@ -2,7 +2,7 @@
 
 #include "tools/digtable/process.h"
 
-#include "tests/scratch.h"
+#include "tests/testlib.h"
 
 #include <errno.h>
 #include <unistd.h>

@@ -40,7 +40,7 @@ TEST(what_is_no_url_of_a_group_is_refused_and_opens_nothing)
             fail_msg("%s: taken", bad[i]);
         }
         assert_int_equal(fd, 42);
-        assert_non_null(strstr(error.text, "expected udpm://"));
+        assert_contains(error.text, "expected udpm://");
     }
 }
 
@@ -66,7 +66,7 @@ TEST(a_group_is_joined_or_it_is_said_why_not)
             assert_true((fcntl(fd, F_GETFL) & O_NONBLOCK) != 0);
             assert_int_equal(close(fd), 0);
         } else {
-            assert_non_null(strstr(error.text, "route"));
+            assert_contains(error.text, "route");
         }
     }
 }

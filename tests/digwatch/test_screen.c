@@ -255,9 +255,8 @@ TEST_WITH(prometheus_gets_all_counters_whole_or_not_at_all, fresh, NULL)
     assert_false(scratch_exists("d.prom.part"));
 
     struct dig_error error = { "" };
-    assert_int_equal(digwatch_prometheus(&model, 0.0, scratch_path("no/where.prom"), &error),
-                     DIG_EIO);
-    assert_contains(error.text, "no/where.prom: No such file");
+    assert_refused(digwatch_prometheus(&model, 0.0, scratch_path("no/where.prom"), &error), error,
+                   DIG_EIO, "no/where.prom: No such file");
 }
 
 TESTS_WITH(scratch_setup, scratch_teardown)

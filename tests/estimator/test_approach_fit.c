@@ -2,7 +2,7 @@
 
 #include "estimator/approach/approach_fit.h"
 
-#include "tests/scratch.h"
+#include "tests/testlib.h"
 
 #include "tests/approach_table.h"
 

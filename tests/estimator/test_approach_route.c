@@ -4,7 +4,7 @@
 
 #include "estimator/approach/approaches.h"
 #include "tests/model_front.h"
-#include "tests/scratch.h"
+#include "tests/testlib.h"
 
 #include "tests/approach_table.h"
 

@@ -7,7 +7,7 @@
 #include "estimator/approach/approaches.h"
 #include "estimator/match/match.h"
 #include "estimator/predict/predict.h"
-#include "tests/scratch.h"
+#include "tests/testlib.h"
 
 #include "tests/approach_table.h"
 

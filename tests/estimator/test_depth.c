@@ -7,7 +7,7 @@
 #include "estimator/approach/laid.h"
 #include "estimator/match/entry_scatter.h"
 #include "estimator/match/likelihood.h"
-#include "tests/scratch.h"
+#include "tests/testlib.h"
 
 #include "tests/approach_table.h"
 

@@ -24,9 +24,7 @@ static void read_machine(const char *const name, struct dig_machine *const machi
     char             path[200];
     struct dig_error error = { "" };
     (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
-    if (dig_machine_read(path, machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(path, machine, &error), error);
 }
 
 static void scale(struct dig_recording *const recording, const double share)
@@ -46,9 +44,7 @@ static void read_dig(const char *const gravel, const char *const kind,
     struct dig_error error = { "" };
     (void)snprintf(path, sizeof path, "tests/data/%s/mu%s_mur%s_rho2500__%s.csv",
                    strcmp(kind, "simpleB") == 0 ? "round_trip" : "reference", gravel, gravel, kind);
-    if (dig_recording_read(path, recording, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_recording_read(path, recording, &error), error);
 }
 
 static void build(const struct dig_machine *const           machine,

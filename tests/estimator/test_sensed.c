@@ -19,9 +19,7 @@ static struct dig_machine shipped(void)
 {
     struct dig_machine machine;
     struct dig_error   error = { "" };
-    if (dig_machine_read("config/machines/rig_sensor.yaml", &machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read("config/machines/rig_sensor.yaml", &machine, &error), error);
     return machine;
 }
 
@@ -114,10 +112,8 @@ static struct run start(const bool quasi_static)
     for (int d = 0; d < DIGS; d++) {
         assert_int_equal(dig_recording_read(files[d], &run.recording[d], &error), DIG_OK);
     }
-    if (dig_rig_track_build(&run.machine, &options, DIGS, run.recording, &run.track, &error) !=
-        DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_rig_track_build(&run.machine, &options, DIGS, run.recording, &run.track, &error),
+              error);
     return run;
 }
 

@@ -101,9 +101,7 @@ TEST(rigs_with_other_buckets_and_places_spread_by_sigma)
 {
     struct dig_machine file;
     struct dig_error   error = { "" };
-    if (dig_machine_read("config/machines/rig_sensor.yaml", &file, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read("config/machines/rig_sensor.yaml", &file, &error), error);
     file.tolerance = (struct dig_tolerance){ .pin_m = 3e-4, .mass_share = 0.03, .com_share = 0.03 };
     const struct dig_rig_pose      pose        = { 0.3, 0.2, -1.4 };
     const struct dig_rig_motion    still       = { .turn_radps2 = { 0.0 } };

@@ -33,9 +33,7 @@ static struct dig_curve_map map_of(const char *const text)
 {
     struct dig_curve_map map;
     struct dig_error     error = { "" };
-    if (dig_curve_map_read(scratch_write("map.yaml", text), &map, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_curve_map_read(scratch_write("map.yaml", text), &map, &error), error);
     return map;
 }
 
@@ -51,9 +49,7 @@ static struct seen digs_of(const char *const csv, const struct dig_curve_map *co
 {
     struct seen      seen  = { .digs = 0 };
     struct dig_error error = { "" };
-    if (read_text(csv, map, &seen, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(read_text(csv, map, &seen, &error), error);
     return seen;
 }
 
@@ -76,9 +72,7 @@ TEST(the_example_of_curves_is_two_digs)
     struct dig_error                 error   = { "" };
     const struct dig_foreign_visitor visitor = { see, &seen };
     assert_int_equal(dig_curve_map_read("tests/data/formats/curve_map.yaml", &map, NULL), DIG_OK);
-    if (dig_curves_read("tests/data/formats/curves.csv", &map, &visitor, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_curves_read("tests/data/formats/curves.csv", &map, &visitor, &error), error);
     assert_int_equal(seen.digs, 2);
     for (size_t d = 0; d < 2; d++) {
         assert_close(seen.dig[d].gravel.value[DIG_AXIS_FRICTION], 0.3, 1e-12);
@@ -162,8 +156,7 @@ TEST(what_does_not_fit_the_map_is_refused_by_its_line)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct seen      seen  = { .digs = 0 };
         struct dig_error error = { "" };
-        assert_int_equal(read_text(bad[i][0], &map, &seen, &error), DIG_EINVAL);
-        assert_contains(error.text, bad[i][1]);
+        assert_refused(read_text(bad[i][0], &map, &seen, &error), error, DIG_EINVAL, bad[i][1]);
         assert_int_equal(seen.digs, 0);
     }
 }
@@ -189,8 +182,7 @@ TEST(a_depth_or_attack_that_cannot_be_is_refused_by_its_line)
             csv, sizeof csv,
             "dig,mu,rho,ms,X,Z,deep,turn\npull,.3,2.5,0,1,1,1,45\npull,.3,2.5,5,1,1,%s\n",
             bad[i][0]);
-        assert_int_equal(read_text(csv, &map, &seen, &error), DIG_EINVAL);
-        assert_contains(error.text, bad[i][1]);
+        assert_refused(read_text(csv, &map, &seen, &error), error, DIG_EINVAL, bad[i][1]);
     }
 }
 
@@ -211,9 +203,8 @@ TEST(what_is_no_map_is_refused_by_its_key)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_curve_map map;
         struct dig_error     error = { "" };
-        assert_int_equal(dig_curve_map_read(scratch_write("map.yaml", bad[i][0]), &map, &error),
-                         DIG_EINVAL);
-        assert_contains(error.text, bad[i][1]);
+        assert_refused(dig_curve_map_read(scratch_write("map.yaml", bad[i][0]), &map, &error),
+                       error, DIG_EINVAL, bad[i][1]);
     }
 }
 

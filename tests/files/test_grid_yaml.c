@@ -85,10 +85,8 @@ TEST(every_grid_that_is_shipped_fits_the_rig)
             struct dig_error error = { "" };
             size_t           count = 0, trajectory[DIG_TRAJECTORY_MAX];
             (void)snprintf(path, sizeof path, "config/grids/%s", entry->d_name);
-            if (dig_grid_read(path, &grid, &error) != DIG_OK ||
-                dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error) != DIG_OK) {
-                fail_msg("%s", error.text);
-            }
+            assert_ok(dig_grid_read(path, &grid, &error), error);
+            assert_ok(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error), error);
             assert_true(count > 0);
         }
     }
@@ -106,11 +104,10 @@ TEST(trajectories_are_found_in_the_scene_or_refused)
     const char *path =
         scratch_write("grid.yaml", AXES "packings: 1\ntrajectories: [simpleA, dance]\n");
     assert_int_equal(dig_grid_read(path, &grid, &error), DIG_OK);
-    assert_int_equal(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error),
-                     DIG_EINVAL);
-    assert_contains(error.text,
-                    "grid.yaml:5: trajectories[1]: \"dance\", expected one of the scene's: "
-                    "simpleA, simpleB, actual");
+    assert_refused(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error), error,
+                   DIG_EINVAL,
+                   "grid.yaml:5: trajectories[1]: \"dance\", expected one of the scene's: "
+                   "simpleA, simpleB, actual");
     assert_int_equal(count, 77);
     assert_int_equal(trajectory[0], 77);
 

@@ -61,9 +61,7 @@ TEST(what_was_written_is_read_back)
 
     struct dig_identity back  = { 0 };
     struct dig_error    error = { "" };
-    if (dig_identity_read(path, &back, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_identity_read(path, &back, &error), error);
     assert_string_equal(back.scene_hash, id.scene_hash);
     assert_string_equal(back.trajectory, "simpleA");
     assert_int_equal(back.match.digs, 3);
@@ -144,9 +142,7 @@ TEST(what_was_written_before_forces_is_read)
 {
     struct dig_identity read  = { .match.forces = true };
     struct dig_error    error = { "" };
-    if (dig_identity_read("tests/data/formats/identity.json", &read, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_identity_read("tests/data/formats/identity.json", &read, &error), error);
     assert_true(read.match.digs > 0 && !read.match.forces && read.match.weighted < 0 &&
                 !(read.made.depth > 0.0));
 }
@@ -202,9 +198,8 @@ TEST(defects_are_refused_by_name)
             fail_msg("%s for %s is taken", defect[i].is, defect[i].was);
         }
         assert_int_equal(untouched.match.digs, 42);
-        if (strstr(error.text, path) == NULL || strstr(error.text, defect[i].names) == NULL) {
-            fail_msg("\"%s\" does not name %s", error.text, defect[i].names);
-        }
+        assert_contains(error.text, path);
+        assert_contains(error.text, defect[i].names);
     }
     struct dig_identity untouched = { .match.digs = 42 };
     assert_int_equal(dig_identity_read(scratch_path("absent.json"), &untouched, NULL), DIG_EIO);

@@ -18,9 +18,7 @@ TEST(what_is_written_is_read_back)
     struct dig_job_plan plan;
     struct dig_job_plan back;
     struct dig_error    error = { "" };
-    if (dig_job_plan_read(scratch_write("good.yaml", good), &plan, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_job_plan_read(scratch_write("good.yaml", good), &plan, &error), error);
     assert_string_equal(plan.job, "digtable-0123456789ab");
     assert_int_equal(plan.tasks, 5);
     assert_int_equal(plan.beds, 12);
@@ -35,9 +33,7 @@ TEST(the_example_is_read)
 {
     struct dig_job_plan plan;
     struct dig_error    error = { "" };
-    if (dig_job_plan_read("tests/data/formats/plan.yaml", &plan, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_job_plan_read("tests/data/formats/plan.yaml", &plan, &error), error);
     assert_int_equal(plan.tasks, 3);
 }
 
@@ -76,9 +72,8 @@ TEST(what_cannot_be_is_refused_by_key)
         assert_non_null(at);
         (void)snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, cases[i].instead,
                        at + strlen(cases[i].line));
-        assert_int_equal(dig_job_plan_read(scratch_write("bad.yaml", text), &plan, &error),
-                         DIG_EINVAL);
-        assert_contains(error.text, cases[i].says);
+        assert_refused(dig_job_plan_read(scratch_write("bad.yaml", text), &plan, &error), error,
+                       DIG_EINVAL, cases[i].says);
         assert_memory_equal(&plan, &as_before, sizeof plan);
     }
 }

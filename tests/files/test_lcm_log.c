@@ -166,9 +166,7 @@ static void check_refused(const char *const name, const enum dig_status status,
     struct dig_machine_recording r     = { .rows = 42 };
     struct dig_error             error = { "" };
     assert_int_equal(dig_lcm_log_read(scratch_path(name), &r, &error), status);
-    if (strstr(error.text, expected) == NULL) {
-        fail_msg("\"%s\" lacks \"%s\"", error.text, expected);
-    }
+    assert_contains(error.text, expected);
     assert_int_equal(r.rows, 42);
 }
 

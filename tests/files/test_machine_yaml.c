@@ -9,9 +9,7 @@ TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
     struct dig_error   error = { "" };
     struct dig_machine m;
-    if (dig_machine_read("tests/data/formats/machine.yaml", &m, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read("tests/data/formats/machine.yaml", &m, &error), error);
     assert_string_equal(m.name, "example 20 t");
     assert_close(m.link[DIG_JOINT_BOOM].length_m, 5.65, 0.0);
     assert_close(m.link[DIG_JOINT_ARM].com_m.y, 0.1, 0.0);
@@ -39,9 +37,7 @@ static void loads(const char *const path)
 {
     struct dig_machine machine;
     struct dig_error   error = { "" };
-    if (dig_machine_read(path, &machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(path, &machine, &error), error);
 }
 
 TEST(a_machine_that_says_no_tolerance_has_that_of_a_tape)
@@ -52,9 +48,7 @@ TEST(a_machine_that_says_no_tolerance_has_that_of_a_tape)
         yaml_with(text, "tolerance:\n  pin_m: 1.0e-3\n  mass_share: 0.03\n  com_share: 0.01\n", "");
     struct dig_machine m;
     struct dig_error   error = { "" };
-    if (dig_machine_read(scratch_write("without.yaml", other), &m, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(scratch_write("without.yaml", other), &m, &error), error);
     assert_close(m.tolerance.pin_m, 2e-3, 0.0);
     assert_close(m.tolerance.mass_share, 0.05, 0.0);
     assert_close(m.tolerance.com_share, 0.02, 0.0);
@@ -71,9 +65,7 @@ TEST(the_example_of_a_rig_loads_as_it_is_written)
 {
     struct dig_error   error = { "" };
     struct dig_machine m;
-    if (dig_machine_read("tests/data/formats/machine_sensor.yaml", &m, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read("tests/data/formats/machine_sensor.yaml", &m, &error), error);
     assert_true(m.sensor.fitted);
     assert_close(m.sensor.place_m.x, -0.06, 0.0);
     assert_close(m.sensor.place_m.y, 0.005, 0.0);

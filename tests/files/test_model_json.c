@@ -52,10 +52,8 @@ TEST(what_was_written_is_read_back)
     struct dig_model  back  = { .effects = 0 };
     struct dig_error  error = { "" };
     const char *const path  = scratch_path("model.json");
-    if (dig_model_save(path, &m, &error) != DIG_OK ||
-        dig_model_read(path, &back, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_model_save(path, &m, &error), error);
+    assert_ok(dig_model_read(path, &back, &error), error);
     assert_string_equal(back.table, m.table);
     assert_string_equal(back.effects_table, m.effects_table);
     assert_string_equal(back.scene_hash, m.scene_hash);
@@ -89,9 +87,7 @@ TEST(the_example_of_the_docs_is_read)
 {
     struct dig_model model = { .effects = 0 };
     struct dig_error error = { "" };
-    if (dig_model_read(example_path, &model, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_model_read(example_path, &model, &error), error);
     assert_int_equal(model.effects, 1);
     assert_null(model.unlisted);
     dig_model_finish(&model);
@@ -135,9 +131,7 @@ TEST(defects_are_refused_by_key_and_write_nothing)
         struct dig_error error = { "" };
         assert_int_equal(dig_model_read(spoilt(cases[i].find, cases[i].put), &model, &error),
                          DIG_EINVAL);
-        if (strstr(error.text, cases[i].named) == NULL) {
-            fail_msg("%s: expected it to name %s", error.text, cases[i].named);
-        }
+        assert_contains(error.text, cases[i].named);
         assert_int_equal(model.effects, 7);
     }
     struct dig_model model = { .effects = 7 };

@@ -9,9 +9,7 @@ static struct dig_scene read_scene(const char *const path)
 {
     struct dig_scene scene;
     struct dig_error error = { "" };
-    if (dig_scene_read(path, &scene, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_scene_read(path, &scene, &error), error);
     return scene;
 }
 

@@ -84,9 +84,7 @@ static inline struct dig_scene yaml_scene(const char *const path)
 {
     struct dig_error error = { "" };
     struct dig_scene scene;
-    if (dig_scene_read(path, &scene, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_scene_read(path, &scene, &error), error);
     return scene;
 }
 

@@ -227,9 +227,7 @@ static inline struct tally check_table(const char *const name)
     assert_int_equal(dig_store_walk(store, &visitor, NULL), DIG_OK);
     struct dig_store_report report = { .entries = 0 };
     struct dig_error        error  = { "" };
-    if (tally.runs > 0 && dig_store_check(store, &report, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(tally.runs > 0 && dig_store_check(store, &report, &error), error);
     assert_int_equal(report.runs, tally.runs);
     dig_store_close(store);
     return tally;

@@ -72,9 +72,7 @@ bool phase_means_add_file(struct phase_means *const          means,
     if (access(path, R_OK) != 0) {
         return false;
     }
-    if (dig_recording_read(path, &r, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_recording_read(path, &r, &error), error);
     phase_means_add_recording(means, trajectory, &r);
     dig_recording_finish(&r);
     return true;

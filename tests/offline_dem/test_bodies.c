@@ -65,9 +65,7 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
     struct dig_world            world;
     struct dig_error            error = { "" };
     assert_non_null(ode);
-    if (dig_setup_world(scene, &gravel, ode, &bed, 0.0, &types, &world, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_setup_world(scene, &gravel, ode, &bed, 0.0, &types, &world, &error), error);
     if (world.bodies == NULL || world.bodies->ode == NULL) {
         dig_ode_scene_destroy(ode);
     }

@@ -19,11 +19,10 @@ static struct dig_recording dig(const struct dig_stepper *const stepper,
     struct dig_bed          bed    = { 0 };
     struct dig_recording    r      = { 0 };
     struct dig_error        error  = { "" };
-    if (dig_bed_pour(stepper, scene, &gravel, 3, NULL, &bed, &error) != DIG_OK ||
-        dig_dig_run(stepper, scene, &gravel, &bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
-            DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_bed_pour(stepper, scene, &gravel, 3, NULL, &bed, &error), error);
+    assert_ok(
+        dig_dig_run(stepper, scene, &gravel, &bed, &scene->trajectory[0], NULL, NULL, &r, &error),
+        error);
     dig_bed_finish(&bed);
     return r;
 }

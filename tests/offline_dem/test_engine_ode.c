@@ -15,10 +15,9 @@ static struct dig_recording dig_with(const bool ode, const struct dig_scene *con
     const struct dig_trajectory *const t      = &scene->trajectory[0];
     struct dig_recording               r      = { 0 };
     struct dig_error                   error  = { "" };
-    if ((ode ? engine.dig(&engine.stepper, scene, &gravel, bed, t, NULL, NULL, &r, &error)
-             : dig_dig_run(&kernel, scene, &gravel, bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok((ode ? engine.dig(&engine.stepper, scene, &gravel, bed, t, NULL, NULL, &r, &error)
+                   : dig_dig_run(&kernel, scene, &gravel, bed, t, NULL, NULL, &r, &error)),
+              error);
     return r;
 }
 
@@ -104,9 +103,7 @@ static void refuses(const struct dig_scene *const scene, const char *const vtk_d
     const struct dig_trajectory *t     = &scene->trajectory[0];
     assert_int_equal(ode.dig(&ode.stepper, scene, &gravel, &bed, t, vtk_dir, NULL, &r, &error),
                      DIG_EINVAL);
-    if (strstr(error.text, key) == NULL) {
-        fail_msg("%s, expected a word of %s", error.text, key);
-    }
+    assert_contains(error.text, key);
     assert_int_equal(r.rows, 77);
 }
 

@@ -114,9 +114,7 @@ static void read_table(const char *const path)
 {
     struct dig_store *store = NULL;
     struct dig_error  error = { "" };
-    if (dig_store_open(path, &store, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_open(path, &store, &error), error);
     size_t                             count   = 0;
     const struct dig_trajectory *const t       = dig_store_trajectories(store, &count);
     struct reading                     reading = { .table = path };

@@ -46,9 +46,7 @@ static struct dig_world make_world(const struct table *const then, const double 
     struct dig_error            error = { "" };
     assert_non_null(ode);
     const double fall_mps = 0.5 + 0.5 * GRAVITY * CLUMP_STEP_s;
-    if (dig_setup_world(&scene, &gravel, ode, &bed, fall_mps, &types, &world, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_setup_world(&scene, &gravel, ode, &bed, fall_mps, &types, &world, &error), error);
     dig_ode_scene_destroy(ode);
     dig_bed_finish(&bed);
     return world;

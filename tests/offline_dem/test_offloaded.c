@@ -18,10 +18,9 @@ static struct dig_recording dig_on(struct dig_device *const      device,
     struct dig_recording     r       = { 0 };
     struct dig_error         error   = { "" };
     const struct dig_stepper stepper = { .device = device };
-    if (dig_dig_run(&stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error) !=
-        DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(
+        dig_dig_run(&stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
+        error);
     return r;
 }
 
@@ -53,9 +52,7 @@ static void digs_agree(const struct dig_scene *const scene)
     struct dig_bed           bed;
     struct dig_error         error = { "" };
     assert_non_null(host);
-    if (dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error), error);
     struct dig_recording kernel = dig_on(NULL, scene, &bed);
     struct dig_recording device = dig_on(host, scene, &bed);
     rows_agree(&kernel, &device);
@@ -248,15 +245,15 @@ TEST(the_engine_says_what_is_missing)
     struct dig_bed          bed;
     assert_int_equal(setenv("DIG_CUDA_LIBRARY", "./no-such-library.so", 1), 0);
     assert_int_equal(cuda.pour(&cuda.stepper, &scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
-    assert_non_null(strstr(error.text, "no-such-library.so"));
+    assert_contains(error.text, "no-such-library.so");
     assert_int_equal(setenv("DIG_CUDA_LIBRARY", "libm.so.6", 1), 0);
     assert_int_equal(cuda.pour(&cuda.stepper, &scene, &gravel, 1, NULL, &bed, &error), DIG_EIO);
-    assert_non_null(strstr(error.text, "libm.so.6 is not of this build"));
+    assert_contains(error.text, "libm.so.6 is not of this build");
     scene.bed.obstacles = 1;
     scene.bed.obstacle[0] =
         (struct dig_obstacle){ DIG_OBSTACLE_SPHERE, { 0.03, 0.0, 0.01 }, { 0.01 }, true, 2500.0 };
     assert_int_equal(cuda.pour(&cuda.stepper, &scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
-    assert_non_null(strstr(error.text, "obstacles[0].movable"));
+    assert_contains(error.text, "obstacles[0].movable");
 }
 
 // The card rounds as the processor does and adds in the same order: not a bit may differ.

@@ -30,9 +30,7 @@ static struct dig_bed pour(const struct dig_scene *const scene)
 {
     struct dig_bed   bed;
     struct dig_error error = { "" };
-    if (dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error), error);
     return bed;
 }
 
@@ -129,10 +127,9 @@ TEST(clumps_stay_whole_and_are_cut_whole)
     dig_recording_finish(&r);
     struct dig_error error  = { "" };
     scene.bed.clump.spheres = 2;
-    assert_int_equal(
+    assert_refused(
         dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r, &error),
-        DIG_EINVAL);
-    assert_non_null(strstr(error.text, "clumps"));
+        error, DIG_EINVAL, "clumps");
     dig_bed_finish(&bed);
 }
 
@@ -226,7 +223,7 @@ TEST(a_pressed_bed_is_denser)
     struct dig_error error = { "" };
     scene.bed.preload_Pa   = 1e6;
     assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, NULL, &bed, &error), DIG_EINVAL);
-    assert_non_null(strstr(error.text, "bed.preload_Pa: 1e+06"));
+    assert_contains(error.text, "bed.preload_Pa: 1e+06");
     assert_int_equal(bed.grains, 77);
 }
 

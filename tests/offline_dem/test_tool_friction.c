@@ -47,11 +47,10 @@ static struct dig_recording pull(const enum engine engine, const struct dig_scen
     const struct dig_stepper           stepper = { .device = host };
     struct dig_recording               r       = { 0 };
     struct dig_error                   error   = { "" };
-    if ((engine == ODE
-             ? ode.dig(&ode.stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)
-             : dig_dig_run(&stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok((engine == ODE
+                   ? ode.dig(&ode.stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)
+                   : dig_dig_run(&stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)),
+              error);
     if (host != NULL) {
         host->destroy(host);
     }

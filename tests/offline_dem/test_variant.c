@@ -20,9 +20,7 @@ static struct dig_scene make(const enum dig_effect_id effect, const double magni
     const struct dig_scene plain = rig();
     struct dig_scene       varied;
     struct dig_error       error = { "" };
-    if (dig_variant_make(&plain, effect, magnitude, &varied, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_variant_make(&plain, effect, magnitude, &varied, &error), error);
     assert_int_equal(dig_scene_check(&varied, &error), DIG_OK);
     return varied;
 }
@@ -161,7 +159,7 @@ TEST(what_no_bed_can_hold_is_refused_by_name)
         assert_int_equal(dig_variant_make(&plain, bad[i].effect, bad[i].magnitude, &varied, &error),
                          DIG_EINVAL);
         assert_memory_equal(&varied, &untouched, sizeof varied);
-        assert_non_null(strstr(error.text, dig_effect_name(bad[i].effect)));
+        assert_contains(error.text, dig_effect_name(bad[i].effect));
     }
     assert_null(dig_variant_unit(DIG_EFFECT_CYLINDER_FRICTION));
     assert_null(dig_variant_unit(DIG_EFFECT_RATE_DEPENDENCE));

@@ -20,9 +20,7 @@ static struct dig_machine read_machine(const char *const name)
     struct dig_machine machine;
     struct dig_error   error = { "" };
     (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
-    if (dig_machine_read(path, &machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(path, &machine, &error), error);
     return machine;
 }
 
@@ -89,6 +87,6 @@ TEST(a_bucket_on_a_force_sensor_is_refused)
     struct dig_rig_track               track   = { .rows = 42 };
     struct dig_error                   error   = { "" };
     assert_int_equal(dig_rig_track_build_air(&machine, &how, &track, &error), DIG_EINVAL);
-    assert_non_null(strstr(error.text, "force sensor"));
+    assert_contains(error.text, "force sensor");
     assert_int_equal(track.rows, 42);
 }

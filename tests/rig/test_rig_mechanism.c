@@ -22,9 +22,7 @@ static struct dig_machine read_machine(const char *const path)
 {
     struct dig_machine machine;
     struct dig_error   error = { "" };
-    if (dig_machine_read(path, &machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(path, &machine, &error), error);
     return machine;
 }
 

@@ -33,9 +33,7 @@ static struct dig_rig_path build(const struct dig_rig_path_options options)
     const struct dig_recording recording = cornered();
     struct dig_rig_path        path;
     struct dig_error           error = { "" };
-    if (dig_rig_path_build(&options, 1, &recording, &path, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_rig_path_build(&options, 1, &recording, &path, &error), error);
     return path;
 }
 

@@ -19,10 +19,9 @@ static void start_tcp(struct rig *const rig)
     memset(rig, 0, sizeof *rig);
     assert_true(dig_rig_board_init(&rig->board, &rig->faults));
     dig_rig_board_write(&rig->board, registers, 0.0);
-    if (dig_rig_modbus_start_tcp("127.0.0.1:0", &rig->board, sizeof where, where, &rig->server,
-                                 &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_rig_modbus_start_tcp("127.0.0.1:0", &rig->board, sizeof where, where,
+                                       &rig->server, &error),
+              error);
     assert_int_equal(sscanf(where, "Modbus TCP on 127.0.0.1:%d", &rig->port), 1);
 }
 

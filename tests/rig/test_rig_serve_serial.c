@@ -102,10 +102,9 @@ TEST(slave_1_on_a_serial_line_serves_reads_and_refuses_writes)
     assert_true(dig_rig_board_init(&rig.board, &rig.faults));
     dig_rig_board_write(&rig.board, registers, 0.0);
     (void)snprintf(address, sizeof address, "%s:57600", cable.name[0]);
-    if (dig_rig_modbus_start_rtu(address, &rig.board, sizeof where, where, &rig.server, &error) !=
-        DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(
+        dig_rig_modbus_start_rtu(address, &rig.board, sizeof where, where, &rig.server, &error),
+        error);
     assert_non_null(strstr(where, "slave 1"));
     assert_non_null(strstr(where, "57600 baud"));
 

@@ -19,9 +19,7 @@ static struct dig_machine read_machine(const char *const name)
     (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
     struct dig_machine machine;
     struct dig_error   error = { "" };
-    if (dig_machine_read(path, &machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read(path, &machine, &error), error);
     return machine;
 }
 
@@ -29,9 +27,7 @@ static struct dig_recording read_recording(const char *const path)
 {
     struct dig_recording recording;
     struct dig_error     error = { "" };
-    if (dig_recording_read(path, &recording, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_recording_read(path, &recording, &error), error);
     return recording;
 }
 
@@ -208,9 +204,8 @@ static void refuse(const struct dig_machine *const machine, const char *const pa
     assert_int_equal(dig_rig_track_build(machine, options, 1, &recording, &track, &error),
                      expected);
     assert_int_equal(track.rows, 42);
-    if (strstr(error.text, word) == NULL || strstr(error.text, other) == NULL) {
-        fail_msg("\"%s\" names neither \"%s\" nor \"%s\"", error.text, word, other);
-    }
+    assert_contains(error.text, word);
+    assert_contains(error.text, other);
     dig_recording_finish(&recording);
 }
 

@@ -14,9 +14,7 @@ static struct dig_machine read_machine(void)
 {
     struct dig_machine machine;
     struct dig_error   error = { "" };
-    if (dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error), error);
     return machine;
 }
 

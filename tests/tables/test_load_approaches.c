@@ -143,9 +143,7 @@ static struct dig_store *open_old(const char *const name)
     struct dig_store *store = NULL;
     struct dig_error  error = { "" };
     assert_int_equal(dig_scene_read("tests/data/formats/scene.yaml", &scene, &error), DIG_OK);
-    if (dig_store_create(scratch_path(name), &scene, &store, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_create(scratch_path(name), &scene, &store, &error), error);
     return store;
 }
 
@@ -195,9 +193,7 @@ TEST_WITH(the_first_run_added_makes_an_old_table_one_of_todays, scratch_setup, s
     }
     const struct dig_recording recording = { .rows = one.rows, .row = row };
     one.origin.approach                  = (struct dig_approach){ 1.2, 0.0 };
-    if (dig_store_put(store, &one.origin, &recording, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_put(store, &one.origin, &recording, &error), error);
     assert_int_equal(dig_store_put(store, &one.origin, &recording, &error), DIG_EINVAL);
     assert_contains(error.text, "depth 1.2, attack 0 deg is there already");
     struct dig_store_report report;
@@ -226,9 +222,7 @@ TEST_WITH(the_first_run_added_makes_an_old_table_one_of_todays, scratch_setup, s
     (void)snprintf(b, sizeof b, "%s", scratch_path("old.sqlite"));
     (void)snprintf(out, sizeof out, "%s", scratch_path("merged.sqlite"));
     const char *const input[] = { a, b };
-    if (dig_store_merge(out, 2, input, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_merge(out, 2, input, &error), error);
     assert_int_equal(fixture_ask("merged.sqlite", "SELECT count(*) FROM run"),
                      fixture_ask("old.sqlite", "SELECT count(*) FROM run"));
     assert_int_equal(fixture_ask("merged.sqlite", "SELECT count(*) FROM ground WHERE depth = 1.2"),

@@ -35,9 +35,7 @@ TEST(effects_are_apart_from_what_is_plain)
 
     struct dig_entry_set *set   = NULL;
     struct dig_error      error = { "" };
-    if (dig_effects_load(scratch_path("both.sqlite"), plain, &set, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_effects_load(scratch_path("both.sqlite"), plain, &set, &error), error);
     assert_string_equal(set->scene_hash, plain->scene_hash);
     assert_int_equal(set->trajectories, 2);
     assert_int_equal(set->entries, 4);
@@ -106,16 +104,14 @@ TEST(what_does_not_belong_together_is_refused)
     struct dig_curve_set *const plain = fixture_load("mine.sqlite");
     struct dig_entry_set       *set   = NULL;
     struct dig_error            error = { "" };
-    assert_int_equal(dig_effects_load(scratch_path("theirs.sqlite"), plain, &set, &error),
-                     DIG_EINVAL);
-    assert_contains(error.text, "theirs.sqlite: scene: holds \"stiffer\" (");
+    assert_refused(dig_effects_load(scratch_path("theirs.sqlite"), plain, &set, &error), error,
+                   DIG_EINVAL, "theirs.sqlite: scene: holds \"stiffer\" (");
     assert_contains(error.text, "\"tub\" (");
     store = fixture_create("plain.sqlite");
     fixture_put(store, .3, .5, 0, 0, 1.0);
     dig_store_close(store);
-    assert_int_equal(dig_effects_load(scratch_path("plain.sqlite"), plain, &set, &error),
-                     DIG_EINVAL);
-    assert_contains(error.text, "plain.sqlite: ground: no rows with an effect");
+    assert_refused(dig_effects_load(scratch_path("plain.sqlite"), plain, &set, &error), error,
+                   DIG_EINVAL, "plain.sqlite: ground: no rows with an effect");
     (void)fixture_copy_bare("mine.sqlite", "odd.sqlite",
                             "UPDATE ground SET effect = 'gremlins' WHERE effect = 'cohesion'");
     assert_int_equal(dig_effects_load(scratch_path("odd.sqlite"), plain, &set, &error), DIG_EINVAL);

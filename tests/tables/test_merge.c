@@ -61,9 +61,7 @@ static char *merged(const char *const out, const size_t inputs, const char *cons
         path[i] = copy[i];
     }
     (void)unlink(scratch_path(out));
-    if (dig_store_merge(scratch_path(out), inputs, path, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_merge(scratch_path(out), inputs, path, &error), error);
     return scratch_read(scratch_path(out), size);
 }
 
@@ -74,9 +72,7 @@ static char *runs_of(const char *const name)
     assert_int_equal(dig_store_open(scratch_path(name), &store, NULL), DIG_OK);
     struct dig_store_report report = { .runs = 0 };
     struct dig_error        error  = { "" };
-    if (dig_store_check(store, &report, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_check(store, &report, &error), error);
     assert_int_equal(report.runs, RUNS);
     FILE *const file = fopen(scratch_path("runs.csv"), "wb");
     assert_non_null(file);

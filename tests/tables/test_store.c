@@ -165,26 +165,23 @@ TEST(what_cannot_become_a_table_is_left_as_it_was)
     struct dig_scene  scene = fixture_scene();
     struct dig_error  error = { "" };
     struct dig_store *store = NULL;
-    assert_int_equal(
+    assert_refused(
         dig_store_create(scratch_write("text.sqlite", "no database at all, just a text file\n"),
                          &scene, &store, &error),
-        DIG_EINVAL);
-    assert_contains(error.text, "text.sqlite: not a digsight table");
+        error, DIG_EINVAL, "text.sqlite: not a digsight table");
     size_t size = 0;
     char  *text = scratch_read(scratch_path("text.sqlite"), &size);
     assert_string_equal(text, "no database at all, just a text file\n");
     free(text);
 
     fixture_run_sql("other.sqlite", "CREATE TABLE photos (id INTEGER)");
-    assert_int_equal(dig_store_create(scratch_path("other.sqlite"), &scene, &store, &error),
-                     DIG_EINVAL);
-    assert_contains(error.text, "other.sqlite: not a digsight table (application_id 0");
+    assert_refused(dig_store_create(scratch_path("other.sqlite"), &scene, &store, &error), error,
+                   DIG_EINVAL, "other.sqlite: not a digsight table (application_id 0");
 
     dig_store_close(fixture_create("newer.sqlite"));
     fixture_run_sql("newer.sqlite", "PRAGMA user_version = 5");
-    assert_int_equal(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error),
-                     DIG_ESCHEMA);
-    assert_contains(error.text, "newer.sqlite: user_version: table format 5, expected 2 to 4");
+    assert_refused(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error), error,
+                   DIG_ESCHEMA, "newer.sqlite: user_version: table format 5, expected 2 to 4");
 
     assert_int_equal(
         dig_store_create(scratch_path("no/such/folder.sqlite"), &scene, &store, &error), DIG_EIO);
@@ -210,13 +207,9 @@ TEST(a_scene_that_is_not_plain_has_a_table_too)
     struct dig_error  error = { "" };
     scene.laws.rolling      = DIG_ROLLING_NONE;
     scene.bed.preload_Pa    = 500.0;
-    if (dig_store_create(scratch_path("bed.sqlite"), &scene, &store, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_create(scratch_path("bed.sqlite"), &scene, &store, &error), error);
     dig_store_close(store);
-    if (dig_store_open(scratch_path("bed.sqlite"), &store, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_open(scratch_path("bed.sqlite"), &store, &error), error);
     dig_store_close(store);
 }
 
@@ -226,9 +219,8 @@ TEST(there_is_one_writer_at_a_time)
     struct dig_store      *second = NULL;
     const struct dig_scene scene  = fixture_scene();
     struct dig_error       error  = { "" };
-    assert_int_equal(dig_store_create(scratch_path("lock.sqlite"), &scene, &second, &error),
-                     DIG_EIO);
-    assert_contains(error.text, "another process is adding to this table");
+    assert_refused(dig_store_create(scratch_path("lock.sqlite"), &scene, &second, &error), error,
+                   DIG_EIO, "another process is adding to this table");
     assert_int_equal(dig_store_open(scratch_path("lock.sqlite"), &second, NULL), DIG_OK);
     fixture_put(first, .3, .3, 0, 0, 1.0); // while a reader has it open
     dig_store_close(second);
@@ -269,9 +261,7 @@ TEST(a_killed_writer_leaves_whole_runs_only)
         assert_true(after > before);
         struct dig_store_report report = { .entries = 0 };
         struct dig_error        error  = { "" };
-        if (dig_store_check(store, &report, &error) != DIG_OK) {
-            fail_msg("%s", error.text);
-        }
+        assert_ok(dig_store_check(store, &report, &error), error);
         assert_int_equal(report.runs, after);
         dig_store_close(store);
     }

@@ -39,9 +39,7 @@ static void make_table(const char *const name, const struct dig_scene *const sce
 {
     struct dig_store *store = NULL;
     struct dig_error  error = { "" };
-    if (dig_store_create(scratch_path(name), scene, &store, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_store_create(scratch_path(name), scene, &store, &error), error);
     dig_store_close(store);
 }
 
@@ -95,9 +93,7 @@ static void expect_no_scene(const char *const text)
     struct dig_scene  b     = { .name = "mine" };
     struct dig_error  error = { "" };
     assert_int_equal(dig_table_scene(path, &b, &error), DIG_EINVAL);
-    if (strstr(error.text, "bare.sqlite: scene.canonical: expected") == NULL) {
-        fail_msg("%s", error.text);
-    }
+    assert_contains(error.text, "bare.sqlite: scene.canonical: expected");
     assert_string_equal(b.name, "mine");
 }
 
