@@ -3,36 +3,18 @@
 
 #include "closed_loop/fit/common_error.h"
 #include "closed_loop/model/approach_change.h"
-#include "core/entry_set.h"
-#include "tables/load.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/shipped_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define TABLE   "tables/product.sqlite"
 #define DENSITY 2500.0 // the one that was dug
-
-static struct dig_curve_set        *set;
-static struct dig_response_surface *surface;
-static struct dig_scatter          *scatter;
 
 static int setup(void **state)
 {
     (void)state;
-    surface = calloc(1, sizeof *surface);
-    return surface == NULL || dig_table_load(TABLE, &set, NULL) != DIG_OK ||
-           dig_response_surface_fit(set, surface) != DIG_OK ||
-           dig_scatter_measure(TABLE, surface, &scatter, NULL) != DIG_OK;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    dig_scatter_destroy(scatter);
-    free(surface);
-    dig_curve_set_destroy(set);
+    shipped_load(PRODUCT, NULL);
     return 0;
 }
 
@@ -120,4 +102,4 @@ TEST(others_tell_a_change_but_for_the_share)
     free(packings);
 }
 
-TESTS_WITH(setup, teardown)
+TESTS_WITH(setup, shipped_teardown)

@@ -3,43 +3,27 @@
 
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/fit/posterior.h"
-#include "tables/load.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/shipped_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define TABLE "tables/reference_rig.sqlite"
-#define DUG   "tests/data/between/rig.sqlite"
+#define DUG "tests/data/between/rig.sqlite"
 
-static struct dig_curve_set        *set, *dug;
-static struct dig_response_surface *surface;
-static struct dig_scatter          *scatter;
-static struct dig_soil             *soil;
+static struct dig_curve_set *dug;
 
 static const struct dig_hypothesis plain = { .effects = 0 };
 
 static int setup(void **state)
 {
-    (void)state;
-    surface = calloc(1, sizeof *surface);
-    return surface == NULL || dig_table_load(TABLE, &set, NULL) != DIG_OK ||
-           dig_table_load(DUG, &dug, NULL) != DIG_OK ||
-           dig_response_surface_fit(set, surface) != DIG_OK ||
-           dig_scatter_measure(TABLE, surface, &scatter, NULL) != DIG_OK ||
-           dig_soil_create(surface, NULL, NULL, &soil) != DIG_OK;
+    struct dig_error error = { "" };
+    assert_ok(dig_table_load(DUG, &dug, &error), error);
+    return shipped_rig_setup(state);
 }
 
 static int teardown(void **state)
 {
-    (void)state;
-    free(soil);
-    dig_scatter_destroy(scatter);
-    free(surface);
     dig_curve_set_destroy(dug);
-    dig_curve_set_destroy(set);
-    return 0;
+    return shipped_teardown(state);
 }
 
 // A gravel's mean of two beds along two trajectories, as a batch of two digs each.
@@ -48,25 +32,16 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
 {
     static struct dig_measured mean[DIG_TRAJECTORY_MAX];
     static const bool          all[DIG_TRAJECTORY_MAX] = { true, true };
-    memset(mean, 0, sizeof mean);
-    size_t digs = 0;
+    size_t                     digs                    = 0;
     for (size_t t = 0; t < dug->trajectories; t++) {
         if (dug->packings[entry * dug->trajectories + t] != 2) {
             continue;
         }
-        struct dig_measured *const m = &mean[digs++];
-        while (strcmp(set->trajectory[m->trajectory].name, dug->trajectory[t].name) != 0) {
-            m->trajectory++;
+        size_t to = 0;
+        while (strcmp(set->trajectory[to].name, dug->trajectory[t].name) != 0) {
+            to++;
         }
-        m->pass = 1;
-        m->pace = 1.0;
-        m->last = 1.0;
-        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            m->measured[c] = true;
-            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                m->value[c][k] = (double)dug->curve[entry * dug->trajectories + t].mean[c][k];
-            }
-        }
+        mean[digs++] = shipped_dig(&dug->curve[entry * dug->trajectories + t], to);
     }
     assert_int_equal(digs, 2);
     dig_response_surface_place(surface, &dug->gravel[entry], place);

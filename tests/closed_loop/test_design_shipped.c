@@ -1,11 +1,8 @@
 // What `digloop design` recommends on the tables that ship.
 
 #include "closed_loop/design/design.h"
+#include "tests/closed_loop/shipped_fixture.h"
 
-#include "tables/load.h"
-#include "tests/testlib.h"
-
-#include <stdlib.h>
 #include <string.h>
 
 // The design of a table without its effects, on other gravels for every seed. Of the product's
@@ -13,24 +10,13 @@
 static struct dig_design design_of(const char *const path, const uint64_t seed,
                                    char recommended[DIG_NAME_SIZE], char reference[DIG_NAME_SIZE])
 {
-    const struct dig_design_settings   settings = { .draws = 1200, .seed = seed };
-    struct dig_response_surface *const surface  = calloc(1, sizeof *surface);
-    struct dig_curve_set              *set      = NULL;
-    struct dig_scatter                *scatter  = NULL;
-    struct dig_error                   error    = { "" };
-    struct dig_design                  design;
-    assert_non_null(surface);
-    if (dig_table_load(path, &set, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
-    assert_int_equal(dig_scatter_measure(path, surface, &scatter, &error), DIG_OK);
+    const struct dig_design_settings settings = { .draws = 1200, .seed = seed };
+    struct dig_design                design;
+    shipped_load(path, NULL);
     assert_int_equal(dig_design_run(surface, scatter, NULL, &settings, &design), DIG_OK);
     memcpy(recommended, set->trajectory[design.rank[0]].name, DIG_NAME_SIZE);
     memcpy(reference, set->trajectory[design.reference].name, DIG_NAME_SIZE);
-    dig_scatter_destroy(scatter);
-    dig_curve_set_destroy(set);
-    free(surface);
+    (void)shipped_teardown(NULL);
     return design;
 }
 
@@ -39,7 +25,7 @@ TEST(the_products_recommended_dig_identifies_better_than_simple_a)
     for (uint64_t seed = 1; seed <= 3; seed++) {
         char                    best[DIG_NAME_SIZE];
         char                    reference[DIG_NAME_SIZE];
-        const struct dig_design d = design_of("tables/product.sqlite", seed, best, reference);
+        const struct dig_design d = design_of(PRODUCT, seed, best, reference);
         assert_string_equal(best, "simpleB");
         assert_string_equal(reference, "simpleA");
         assert_true(d.confirmed);
@@ -54,7 +40,7 @@ TEST(the_rigs_simple_a_tells_most_already)
 {
     char                    best[DIG_NAME_SIZE];
     char                    reference[DIG_NAME_SIZE];
-    const struct dig_design d = design_of("tables/reference_rig.sqlite", 1, best, reference);
+    const struct dig_design d = design_of(RIG, 1, best, reference);
     assert_string_equal(best, "simpleA");
     assert_string_equal(reference, "simpleA");
     assert_false(d.confirmed);

@@ -5,49 +5,25 @@
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/search/null_simulation.h"
-#include "tables/load.h"
-#include "tests/testlib.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#define TABLE "tables/reference_rig.sqlite"
+#include "tests/closed_loop/shipped_fixture.h"
 
 enum { BEDS = 2 };
 
-static struct dig_curve_set        *set;
-static struct dig_entry_set        *dug;
-static struct dig_response_surface *surface;
-static struct dig_scatter          *scatter;
-static struct dig_soil             *soil;
+static struct dig_entry_set *dug;
 
 static int setup(void **state)
 {
     (void)state;
-    struct dig_entry_set *effects = NULL;
-    surface                       = calloc(1, sizeof *surface);
-    const bool made =
-        surface != NULL && dig_table_load(TABLE, &set, NULL) == DIG_OK &&
-        dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, NULL) == DIG_OK &&
-        dig_effects_load("tests/data/blind/effects.sqlite", set, &dug, NULL) == DIG_OK &&
-        dig_response_surface_fit(set, surface) == DIG_OK &&
-        dig_scatter_measure(TABLE, surface, &scatter, NULL) == DIG_OK &&
-        dig_soil_create(surface, effects, scatter, &soil) == DIG_OK;
-    dig_entry_set_destroy(effects);
-    return made ? 0 : 1;
+    struct dig_error error = { "" };
+    shipped_load(RIG, RIG_EFFECTS);
+    assert_ok(dig_effects_load("tests/data/blind/effects.sqlite", set, &dug, &error), error);
+    return 0;
 }
 
 static int teardown(void **state)
 {
-    (void)state;
-    free(soil);
-    dig_scatter_destroy(scatter);
-    free(surface);
     dig_entry_set_destroy(dug);
-    dig_curve_set_destroy(set);
-    return 0;
+    return shipped_teardown(state);
 }
 
 // What holds of every dig alike: not what passes over the ground change.
@@ -66,15 +42,8 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
     for (size_t t = 0; t < dug->trajectories; t++) {
         const size_t at = entry * dug->trajectories + t;
         for (int bed = 0; bed < dug->packings[at]; bed++) {
-            struct dig_measured *const m = &dig[digs];
-            all[digs++]                  = true;
-            *m = (struct dig_measured){ .trajectory = (int)t, .pass = 1, .pace = 1.0, .last = 1.0 };
-            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                m->measured[c] = true;
-                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                    m->value[c][k] = (double)dug->curve[at].mean[c][k];
-                }
-            }
+            all[digs]   = true;
+            dig[digs++] = shipped_dig(&dug->curve[at], t);
         }
     }
     dig_response_surface_place(surface, &dug->entry[entry].gravel, place);

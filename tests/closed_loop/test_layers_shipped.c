@@ -2,17 +2,10 @@
 // develop with) and traced with the tables that ship: where the layer begins, and how hard it
 // resists.
 
-#include "closed_loop/model/response_surface.h"
 #include "closed_loop/verdict/trace.h"
-#include "tables/load.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/shipped_fixture.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#define TABLE "tables/reference_rig.sqlite"
 
 // From tests/blind/pool/make.sh: what lies in the gravel, and how high.
 struct layer {
@@ -30,46 +23,14 @@ static const struct layer layers[] = {
     { "tests/data/blind/layering-sandy=-0.057.sqlite", -0.057, { { 0.35, 0.35, 1600 } }, false },
 };
 
-static struct dig_curve_set        *set;
-static struct dig_entry_set        *effects;
-static struct dig_response_surface *surface;
-
-static int setup(void **state)
-{
-    (void)state;
-    surface = calloc(1, sizeof *surface);
-    return surface == NULL || dig_table_load(TABLE, &set, NULL) != DIG_OK ||
-           dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, NULL) != DIG_OK ||
-           dig_response_surface_fit(set, surface) != DIG_OK;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    free(surface);
-    dig_entry_set_destroy(effects);
-    dig_curve_set_destroy(set);
-    return 0;
-}
-
 // The mean of a layer's two beds along each trajectory, taken for one dig.
 static size_t take_digs(const struct layer *const layer, struct dig_measured dig[])
 {
     struct dig_curve_set *dug = NULL;
     struct dig_error      error;
-    if (dig_table_load(layer->file, &dug, &error) != DIG_OK) {
-        fail_msg("%s", error.text);
-    }
+    assert_ok(dig_table_load(layer->file, &dug, &error), error);
     for (size_t t = 0; t < dug->trajectories; t++) {
-        dig[t] = (struct dig_measured){
-            .trajectory = (int)t, .use = DIG_USE_FIT, .pass = 1, .pace = 1.0, .last = 1.0
-        };
-        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            dig[t].measured[c] = true;
-            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                dig[t].value[c][k] = (double)dug->curve[t].mean[c][k];
-            }
-        }
+        dig[t] = shipped_dig(&dug->curve[t], t);
     }
     const size_t digs = dug->trajectories;
     dig_curve_set_destroy(dug);
@@ -101,7 +62,7 @@ TEST(a_layer_is_told_by_its_top_and_its_resistance)
         const size_t              digs = take_digs(layer, dig);
         struct dig_trace_settings by   = dig_trace_settings_default();
         struct dig_trace          trace;
-        assert_int_equal(dig_trace_run(set, TABLE, effects, &by, NULL, digs, dig, &trace, NULL),
+        assert_int_equal(dig_trace_run(set, RIG, effects, &by, NULL, digs, dig, &trace, NULL),
                          DIG_OK);
         const double truth = ratio_of(&layer->material, &gravel);
         const bool   named = trace.effects == 1 && trace.effect[0].effect == DIG_EFFECT_LAYERING;
@@ -130,4 +91,4 @@ TEST(a_layer_is_told_by_its_top_and_its_resistance)
     }
 }
 
-TESTS_WITH(setup, teardown)
+TESTS_WITH(shipped_rig_effects_setup, shipped_teardown)

@@ -6,23 +6,14 @@
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/recordings/observe.h"
 #include "files/recording_csv.h"
-#include "tables/load.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/shipped_fixture.h"
 
 #include <glob.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define TABLE "tables/reference_rig.sqlite"
-
 enum { GRAVELS_MAX = 32, DIGS_MAX = 12 };
-
-static struct dig_curve_set        *set;
-static struct dig_response_surface *surface;
-static struct dig_scatter          *scatter;
-static struct dig_soil             *soil;
 
 static const struct dig_hypothesis plain = { .effects = 0 };
 
@@ -62,16 +53,9 @@ static void take(const char *const path, const struct dig_gravel *const gravel)
 
 static int setup(void **state)
 {
-    (void)state;
     static const char *const files[] = { "tests/data/reference/mu*.csv",
                                          "tests/data/liggghts_more/mu*.csv" };
-    surface                          = calloc(1, sizeof *surface);
-    if (surface == NULL || dig_table_load(TABLE, &set, NULL) != DIG_OK ||
-        dig_response_surface_fit(set, surface) != DIG_OK ||
-        dig_scatter_measure(TABLE, surface, &scatter, NULL) != DIG_OK ||
-        dig_soil_create(surface, NULL, NULL, &soil) != DIG_OK) {
-        return 1;
-    }
+    (void)shipped_rig_setup(state);
     for (size_t f = 0; f < sizeof files / sizeof files[0]; f++) {
         glob_t found;
         assert_int_equal(glob(files[f], 0, NULL, &found), 0);
@@ -88,16 +72,6 @@ static int setup(void **state)
         globfree(&found);
     }
     return grounds == 13 ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    free(soil);
-    dig_scatter_destroy(scatter);
-    free(surface);
-    dig_curve_set_destroy(set);
-    return 0;
 }
 
 static void make_batch(const struct ground *const g, double place[DIG_AXES],
@@ -168,4 +142,4 @@ TEST(intervals_of_the_gravel_hold)
     assert_true((double)held >= 0.75 * (double)(grounds * DIG_AXES));
 }
 
-TESTS_WITH(setup, teardown)
+TESTS_WITH(setup, shipped_teardown)

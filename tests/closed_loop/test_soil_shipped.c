@@ -1,46 +1,7 @@
-#include "closed_loop/model/soil.h"
 #include "closed_loop/model/soil_fit.h"
-#include "tables/load.h"
-#include "tests/testlib.h"
+#include "tests/closed_loop/shipped_fixture.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-// The tables that ship.
-static struct dig_curve_set        *set;
-static struct dig_entry_set        *effects;
-static struct dig_response_surface *surface;
-static struct dig_scatter          *scatter;
-static struct dig_soil             *soil;
-
-static int load(void **state)
-{
-    (void)state;
-    const char *const table = "tables/reference_rig.sqlite";
-    struct dig_error  error = { "" };
-    surface                 = calloc(1, sizeof *surface);
-    if (surface == NULL || dig_table_load(table, &set, &error) != DIG_OK ||
-        dig_effects_load("tables/reference_rig_effects.sqlite", set, &effects, &error) != DIG_OK ||
-        dig_response_surface_fit(set, surface) != DIG_OK ||
-        dig_scatter_measure(table, surface, &scatter, &error) != DIG_OK ||
-        dig_soil_create(surface, effects, scatter, &soil) != DIG_OK) {
-        print_error("%s\n", error.text);
-        return 1;
-    }
-    return 0;
-}
-
-static int unload(void **state)
-{
-    (void)state;
-    free(soil);
-    dig_scatter_destroy(scatter);
-    free(surface);
-    dig_entry_set_destroy(effects);
-    dig_curve_set_destroy(set);
-    return 0;
-}
 
 // What a template leaves of an entry's mean, in variances of that mean, over the features: 1 of a
 // template that is right and was not fitted to it.
@@ -150,4 +111,4 @@ TEST(a_smoother_bucket_takes_off_the_moment_down_to_no_friction)
     }
 }
 
-TESTS_WITH(load, unload)
+TESTS_WITH(shipped_rig_effects_setup, shipped_teardown)
