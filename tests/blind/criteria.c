@@ -5,6 +5,10 @@
 
 #define SURE 0.5
 
+// What the rows ask: digs of our DEM or of another code, and size in all or in the soil alone.
+enum { ANY = -1, ANOTHER, OURS };
+enum { ALL, SOIL };
+
 struct blind_share blind_share_of(const size_t k, const size_t n)
 {
     if (n == 0) {
@@ -18,95 +22,48 @@ struct blind_share blind_share_of(const size_t k, const size_t n)
     return (struct blind_share){ k, n, fmax(middle - half, 0.0), fmin(middle + half, 1.0) };
 }
 
-// An effect of the catalogue that is not there, claimed with a probability above one half.
-static size_t sure_of_wrong(const struct blind_result *const r)
+// An effect of the catalogue, claimed with a probability above one half.
+static bool is_sure(const struct blind_result *const r, const size_t i)
 {
-    bool is = false;
-    for (size_t i = 0; i < r->verdict.effects; i++) {
-        is = is ||
-             (r->verdict.probability[i] > SURE && strcmp(r->verdict.effect[i], "unlisted") != 0 &&
-              !blind_justified(r, r->verdict.effect[i]));
-    }
-    return is;
+    return r->verdict.probability[i] > SURE && strcmp(r->verdict.effect[i], "unlisted") != 0;
 }
-
 static size_t sure_of_any(const struct blind_result *const r)
 {
     bool is = false;
     for (size_t i = 0; i < r->verdict.effects; i++) {
-        is = is ||
-             (r->verdict.probability[i] > SURE && strcmp(r->verdict.effect[i], "unlisted") != 0);
+        is = is || is_sure(r, i);
+    }
+    return is;
+}
+// One that is not there.
+static size_t sure_of_wrong(const struct blind_result *const r)
+{
+    bool is = false;
+    for (size_t i = 0; i < r->verdict.effects; i++) {
+        is = is || (is_sure(r, i) && !blind_justified(r, r->verdict.effect[i]));
     }
     return is;
 }
 
-static size_t is_none(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_NONE;
-}
 static size_t alarmed(const struct blind_result *const r)
 {
     return !blind_says(r, "none");
-}
-static size_t is_clear(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_SINGLE && blind_class_of(r) == 3;
-}
-static size_t is_middling(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_SINGLE && blind_class_of(r) == 1;
-}
-static size_t is_faint(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_SINGLE && blind_class_of(r) == 0;
-}
-static size_t is_single_in_soil(const struct blind_result *const r, const int class)
-{
-    return r->order.kind == BLIND_SINGLE && blind_class_of_size(blind_size_in_soil(r)) == class;
-}
-static size_t is_clear_in_soil(const struct blind_result *const r)
-{
-    return is_single_in_soil(r, 3);
-}
-static size_t is_middling_in_soil(const struct blind_result *const r)
-{
-    return is_single_in_soil(r, 1);
-}
-static size_t is_faint_in_soil(const struct blind_result *const r)
-{
-    return is_single_in_soil(r, 0);
 }
 static size_t is_right(const struct blind_result *const r)
 {
     return blind_answer_of(r) == BLIND_RIGHT || blind_answer_of(r) == BLIND_IN_SET;
 }
-static size_t is_clear_pair(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_PAIR && blind_class_of(r) == 3;
-}
 static size_t has_both(const struct blind_result *const r)
 {
     return blind_found(r, &r->order.effect[0]) && blind_found(r, &r->order.effect[1]);
-}
-static size_t is_outside(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_OUTSIDE;
-}
-static size_t is_clear_outside(const struct blind_result *const r)
-{
-    return r->order.kind == BLIND_OUTSIDE && blind_class_of(r) == 3;
-}
-static size_t is_clear_outside_in_soil(const struct blind_result *const r)
-{
-    return is_outside(r) && blind_class_of_size(blind_size_in_soil(r)) == 3;
 }
 static size_t is_unlisted(const struct blind_result *const r)
 {
     return blind_says(r, "unlisted");
 }
-static size_t is_known(const struct blind_result *const r)
+static size_t has_after(const struct blind_result *const r)
 {
-    return r->order.kind == BLIND_SINGLE && isfinite(r->verdict.after) && blind_class_of(r) == 3;
+    return isfinite(r->verdict.after);
 }
 static size_t is_near_oracle(const struct blind_result *const r)
 {
@@ -120,7 +77,7 @@ static size_t made_worse(const struct blind_result *const r)
 {
     return r->verdict.after > r->verdict.before * (1.0 + 1e-9);
 }
-static size_t is_any(const struct blind_result *const r)
+static size_t whole(const struct blind_result *const r)
 {
     (void)r;
     return 1;
@@ -141,34 +98,14 @@ static bool is_soil_effect(const struct blind_result *const r)
 {
     return r->order.kind == BLIND_SINGLE && r->order.effect[0].how != BLIND_BY_MACHINE;
 }
-static bool is_ours(const struct blind_result *const r)
+static size_t plain_gravel(const struct blind_result *const r)
 {
-    return strcmp(r->source, "ours") == 0;
-}
-static size_t plain_gravel(const struct blind_result *const r, const bool ours)
-{
-    return has_gravel(r) && !is_soil_effect(r) && is_ours(r) == ours ? DIG_AXES : 0;
-}
-static size_t plain_gravel_of_ours(const struct blind_result *const r)
-{
-    return plain_gravel(r, true);
-}
-static size_t plain_gravel_of_another(const struct blind_result *const r)
-{
-    return plain_gravel(r, false);
+    return has_gravel(r) && !is_soil_effect(r) ? DIG_AXES : 0;
 }
 // Beside an effect that was found: of one that was not, the gravel is told wrongly with reason.
-static size_t gravel_beside(const struct blind_result *const r, const bool ours)
+static size_t gravel_beside(const struct blind_result *const r)
 {
-    return has_gravel(r) && is_soil_effect(r) && is_ours(r) == ours && is_right(r) ? DIG_AXES : 0;
-}
-static size_t gravel_beside_of_ours(const struct blind_result *const r)
-{
-    return gravel_beside(r, true);
-}
-static size_t gravel_beside_of_another(const struct blind_result *const r)
-{
-    return gravel_beside(r, false);
+    return has_gravel(r) && is_soil_effect(r) && is_right(r) ? DIG_AXES : 0;
 }
 static size_t gravel_held(const struct blind_result *const r)
 {
@@ -191,19 +128,10 @@ static size_t named(const struct blind_result *const r)
     return i;
 }
 // Compaction has no magnitude of its own: it is what passes before did.
-static size_t magnitude(const struct blind_result *const r, const bool ours)
+static size_t magnitude(const struct blind_result *const r)
 {
-    const bool has = is_soil_effect(r) && strcmp(r->order.effect[0].name, "compaction") != 0 &&
-                     strcmp(r->order.effect[0].name, "rate_dependence") != 0;
-    return has && is_ours(r) == ours && named(r) < r->verdict.effects ? 1 : 0;
-}
-static size_t magnitude_of_ours(const struct blind_result *const r)
-{
-    return magnitude(r, true);
-}
-static size_t magnitude_of_another(const struct blind_result *const r)
-{
-    return magnitude(r, false);
+    return is_soil_effect(r) && strcmp(r->order.effect[0].name, "compaction") != 0 &&
+           strcmp(r->order.effect[0].name, "rate_dependence") != 0 && named(r) < r->verdict.effects;
 }
 static size_t magnitude_held(const struct blind_result *const r)
 {
@@ -212,46 +140,67 @@ static size_t magnitude_held(const struct blind_result *const r)
 }
 
 const struct blind_criterion blind_criterion[BLIND_CRITERIA] = {
-    { "no effect: false alarms", is_none, alarmed, 0.02, false },
-    { "one effect, size 3 and more: named or in a small set", is_clear, is_right, 0.95, true },
-    { "one effect, size about 1.5: named or in a small set", is_middling, is_right, 0.70, true },
-    { "one effect, size below 1: something named with p > .5", is_faint, sure_of_any, 0.05, false },
-    { "the same by the size in the soil alone: 3 and more", is_clear_in_soil, is_right, 0.95,
+    { "no effect: false alarms", BLIND_NONE, ANY, ALL, ANY, whole, alarmed, 0.02, false },
+    { "one effect, size 3 and more: named or in a small set", BLIND_SINGLE, 3, ALL, ANY, whole,
+      is_right, 0.95, true },
+    { "one effect, size about 1.5: named or in a small set", BLIND_SINGLE, 1, ALL, ANY, whole,
+      is_right, 0.70, true },
+    { "one effect, size below 1: something named with p > .5", BLIND_SINGLE, 0, ALL, ANY, whole,
+      sure_of_any, 0.05, false },
+    { "the same by the size in the soil alone: 3 and more", BLIND_SINGLE, 3, SOIL, ANY, whole,
+      is_right, 0.95, true },
+    { "  about 1.5", BLIND_SINGLE, 1, SOIL, ANY, whole, is_right, 0.70, true },
+    { "  below 1: something named with p > .5", BLIND_SINGLE, 0, SOIL, ANY, whole, sure_of_any,
+      0.05, false },
+    { "pairs, each of size 3 and more: both named", BLIND_PAIR, 3, ALL, ANY, whole, has_both, 0.80,
       true },
-    { "  about 1.5", is_middling_in_soil, is_right, 0.70, true },
-    { "  below 1: something named with p > .5", is_faint_in_soil, sure_of_any, 0.05, false },
-    { "pairs, each of size 3 and more: both named", is_clear_pair, has_both, 0.80, true },
-    { "outside the catalogue: a wrong name with p > .5", is_outside, sure_of_wrong, 0.05, false },
-    { "outside the catalogue, size 3 and more: unlisted", is_clear_outside, is_unlisted, 0.80,
-      true },
-    { "  the same by the size in the soil alone", is_clear_outside_in_soil, is_unlisted, 0.80,
-      true },
-    { "one effect, size 3 and more: error after <= 1.15 of the oracle's", is_known, is_near_oracle,
-      0.50, true },
-    { "holdout error made worse", has_errors, made_worse, 0.02, false },
-    { "plain gravel or machine: 90 % intervals of the gravel hold, our DEM", plain_gravel_of_ours,
-      gravel_held, 0.85, true },
-    { "  another code", plain_gravel_of_another, gravel_held, 0.75, true },
-    { "beside an effect of the soil that was found: of the gravel, our DEM", gravel_beside_of_ours,
-      gravel_held, 0.85, true },
-    { "  another code", gravel_beside_of_another, gravel_held, 0.75, true },
-    { "  of its magnitude, our DEM", magnitude_of_ours, magnitude_held, 0.85, true },
-    { "  another code", magnitude_of_another, magnitude_held, 0.75, true },
-    { "traced in 10 s of one core and 500 MB", is_any, is_quick, 1.0, true },
+    { "outside the catalogue: a wrong name with p > .5", BLIND_OUTSIDE, ANY, ALL, ANY, whole,
+      sure_of_wrong, 0.05, false },
+    { "outside the catalogue, size 3 and more: unlisted", BLIND_OUTSIDE, 3, ALL, ANY, whole,
+      is_unlisted, 0.80, true },
+    { "  the same by the size in the soil alone", BLIND_OUTSIDE, 3, SOIL, ANY, whole, is_unlisted,
+      0.80, true },
+    { "one effect, size 3 and more: error after <= 1.15 of the oracle's", BLIND_SINGLE, 3, ALL, ANY,
+      has_after, is_near_oracle, 0.50, true },
+    { "holdout error made worse", ANY, ANY, ALL, ANY, has_errors, made_worse, 0.02, false },
+    { "plain gravel or machine: 90 % intervals of the gravel hold, our DEM", ANY, ANY, ALL, OURS,
+      plain_gravel, gravel_held, 0.85, true },
+    { "  another code", ANY, ANY, ALL, ANOTHER, plain_gravel, gravel_held, 0.75, true },
+    { "beside an effect of the soil that was found: of the gravel, our DEM", ANY, ANY, ALL, OURS,
+      gravel_beside, gravel_held, 0.85, true },
+    { "  another code", ANY, ANY, ALL, ANOTHER, gravel_beside, gravel_held, 0.75, true },
+    { "  of its magnitude, our DEM", ANY, ANY, ALL, OURS, magnitude, magnitude_held, 0.85, true },
+    { "  another code", ANY, ANY, ALL, ANOTHER, magnitude, magnitude_held, 0.75, true },
+    { "traced in 10 s of one core and 500 MB", ANY, ANY, ALL, ANY, whole, is_quick, 1.0, true },
 };
+
+static bool fits(const int wanted, const int is)
+{
+    return wanted == ANY || wanted == is;
+}
+
+static size_t about(const struct blind_criterion *const c, const struct blind_result *const r)
+{
+    const double size = c->in_soil ? blind_size_in_soil(r) : blind_size_of(r);
+    const int    code = strcmp(r->source, "ours") == 0 ? OURS : ANOTHER;
+    const bool   is   = r->state == BLIND_TRACED && fits(c->kind, (int)r->order.kind) &&
+                    fits(c->class, blind_class_of_size(size)) && fits(c->code, code);
+    return is ? c->about(r) : 0;
+}
+
 struct blind_share blind_criterion_judge(const struct blind_criterion *const c, const size_t n,
                                          const struct blind_result result[])
 {
-    size_t about  = 0;
+    size_t of     = 0;
     size_t counts = 0;
     for (size_t i = 0; i < n; i++) {
-        const size_t of = result[i].state == BLIND_TRACED ? c->about(&result[i]) : 0;
-        if (of > 0) {
-            about += of;
+        const size_t things = about(c, &result[i]);
+        if (things > 0) {
+            of += things;
             counts += c->counts(&result[i]);
         }
     }
-    return blind_share_of(counts, about);
+    return blind_share_of(counts, of);
 }
 
 const char *blind_criterion_holds(const struct blind_criterion *const c,

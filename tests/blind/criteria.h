@@ -15,10 +15,14 @@ struct blind_share {
 
 struct blind_share blind_share_of(size_t k, size_t n);
 
-/// One acceptance criterion: how many things of a campaign it is about (none: not about it), how
-/// many of them count, and what the share is to be.
+/// One acceptance criterion: the campaigns it is about, how many things of each (none: not about
+/// it), how many of them count, and what the share is to be. -1 for kind, class or code: any.
 struct blind_criterion {
     const char *title;
+    int         kind;
+    int class;    // of size
+    bool in_soil; // of blind_size_in_soil(), not blind_size_of()
+    int  code;    // 1: dug by our DEM, 0: by another
     size_t (*about)(const struct blind_result *);
     size_t (*counts)(const struct blind_result *);
     double bound;

@@ -265,6 +265,19 @@ TEST(intervals_are_judged_number_by_number)
     assert_int_equal(blind_criterion_judge(criterion("  of its magnitude, our DEM"), 1, &r).n, 0);
 }
 
+// Large by what shows in free air alone, and so not in the soil.
+TEST(a_criterion_is_about_its_kind_and_size_alone)
+{
+    struct blind_result r = answered("wear", "wear", 0.9);
+    r.truth.size[0]       = 0.5;
+    assert_int_equal(blind_criterion_judge(criterion("one effect, size below 1"), 1, &r).n, 1);
+    r.truth.size_air[0] = 3.0;
+    assert_int_equal(blind_criterion_judge(criterion("one effect, size below 1"), 1, &r).n, 0);
+    assert_int_equal(blind_criterion_judge(criterion("one effect, size 3"), 1, &r).k, 1);
+    assert_int_equal(blind_criterion_judge(criterion("the same by the size"), 1, &r).n, 0);
+    assert_int_equal(blind_criterion_judge(criterion("pairs"), 1, &r).n, 0);
+}
+
 TEST(the_pool_holds_whole_beds_of_known_gravel)
 {
     struct blind_pool pool  = { 0, NULL };
