@@ -1,5 +1,6 @@
 // Checks the derived rows of a table against its runs.
 
+#include "core/sort.h"
 #include "tables/grounds.h"
 #include "tables/load.h"
 #include "tables/store.h"
@@ -84,33 +85,38 @@ static enum kind kind_of(const struct dig_entry_set *const all, const size_t gro
     return dig_approach_is_plain(&all->entry[ground].approach) ? KIND_PLAIN : KIND_APPROACHED;
 }
 
-// The number of packings that most entries of the kind have; of two as frequent, the larger.
-static int usual_packings(const struct dig_entry_set *const all, const enum kind kind)
+// The number of packings that most entries of the kind have; of two as frequent, the larger. There
+// is room for every entry's.
+static int usual_packings(const struct dig_entry_set *const all, const enum kind kind,
+                          double packings[])
 {
+    size_t n = 0;
+    for (size_t i = 0; i < all->entries * all->trajectories; i++) {
+        if (all->packings[i] > 0 && kind_of(all, i / all->trajectories) == kind) {
+            packings[n++] = all->packings[i];
+        }
+    }
+    dig_sort(n, packings);
     int    usual = 0;
     size_t best  = 0;
-    for (size_t i = 0; i < all->entries * all->trajectories; i++) {
-        size_t    times = 0;
-        const int n     = all->packings[i];
-        for (size_t k = 0; k < all->entries * all->trajectories; k++) {
-            const bool same = kind_of(all, k / all->trajectories) == kind;
-            times += same && all->packings[k] == n ? 1 : 0;
-        }
-        if (n > 0 && (times > best || (times == best && n > usual))) {
-            usual = n;
-            best  = times;
+    for (size_t i = 0, first = 0; i < n; i++) {
+        first = packings[i] > packings[first] ? i : first;
+        if (i - first + 1 >= best) {
+            usual = (int)packings[i];
+            best  = i - first + 1;
         }
     }
     return usual;
 }
 
-static void count_entries(const struct dig_entry_set *const all,
-                          struct dig_store_report *const    report)
+// packings[] is room for every entry's.
+static void count_entries(const struct dig_entry_set *const all, double packings[],
+                          struct dig_store_report *const report)
 {
     bool used[KINDS][DIG_TRAJECTORY_MAX] = { { false } };
     int  usual[KINDS];
     for (int kind = 0; kind < KINDS; kind++) {
-        usual[kind] = usual_packings(all, (enum kind)kind);
+        usual[kind] = usual_packings(all, (enum kind)kind, packings);
     }
     for (size_t i = 0; i < all->entries * all->trajectories; i++) {
         report->entries += all->packings[i] > 0 ? 1 : 0;
@@ -170,7 +176,9 @@ static enum dig_status check_all(struct dig_store *const        store,
         status = dig_sql_load(store->db, store->path, &store->head, &set, error);
     }
     struct scratch *const scratch = calloc(1, sizeof *scratch);
-    if (status == DIG_OK && scratch == NULL) {
+    double *const         packings =
+        status == DIG_OK ? calloc(all->entries * all->trajectories + 1, sizeof *packings) : NULL;
+    if (status == DIG_OK && (scratch == NULL || packings == NULL)) {
         status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
     }
     for (size_t i = 0; status == DIG_OK && scratch != NULL && i < all->entries * all->trajectories;
@@ -185,9 +193,10 @@ static enum dig_status check_all(struct dig_store *const        store,
     if (status == DIG_OK && set != NULL) {
         made.holes = count_holes(set);
         made.step  = dig_grounds_step(all, &store->head);
-        count_entries(all, &made);
+        count_entries(all, packings, &made);
         *report = made;
     }
+    free(packings);
     free(scratch);
     dig_curve_set_destroy(set);
     dig_entry_set_destroy(all);
