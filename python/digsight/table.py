@@ -121,12 +121,13 @@ def open_table(path: str | Path) -> Table:
     """Opens a table for reading."""
     name = str(path)
     check_regular(path)
-    for beside in (f"{path}-journal", f"{path}-wal"):  # SQLite would open them
+    real = os.path.realpath(path)
+    for beside in (f"{real}-journal", f"{real}-wal"):  # SQLite would open them, beside what a link points to
         if os.path.lexists(beside):
             check_regular(beside)
     with open(path, "rb"):  # SQLite's own error does not say why
         pass
-    db = sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)
+    db = sqlite3.connect(f"{Path(real).as_uri()}?mode=ro", uri=True)
     _query(db, name, "PRAGMA trusted_schema = OFF")
     identity = _query(db, name, "PRAGMA application_id").iat[0, 0]
     version = _query(db, name, "PRAGMA user_version").iat[0, 0]

@@ -140,12 +140,16 @@ class Digsight(unittest.TestCase):
             for reader in (digsight.open_table, digsight.read_trace):
                 with self.assertRaisesRegex(ValueError, "no regular file"):
                     reader(path)
+        link = Path(self.folder, "link.sqlite")
+        os.symlink(table, link)
         for beside in ("-journal", "-wal"):
             os.rename(pipe, f"{table}{beside}")
-            with self.assertRaisesRegex(ValueError, f"changed.sqlite{beside}: no regular file"):
-                digsight.open_table(table)
+            for name in (table, link):
+                with self.assertRaisesRegex(ValueError, f"changed.sqlite{beside}: no regular file"):
+                    digsight.open_table(name)
             os.rename(f"{table}{beside}", pipe)
         digsight.open_table(table)
+        digsight.open_table(link)
 
     def test_what_a_table_lacks_is_refused_with_what_it_has(self) -> None:
         rig = digsight.open_table(RIG)
