@@ -170,8 +170,8 @@ static void add_point(struct dig_air *const air, const struct dig_machine_dig *c
 static void add_segment(struct dig_air *const air, const struct dig_machine_dig *const dig,
                         const size_t which, const bool after)
 {
-    const size_t from = after ? dig->after : 0;
-    const size_t to   = after ? dig->samples : dig->before_end;
+    const size_t from = after ? dig->after : dig->before;
+    const size_t to   = after ? dig->after_end : dig->before_end;
     if (to < from + 2) {
         return;
     }

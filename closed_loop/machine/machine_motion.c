@@ -103,6 +103,7 @@ static enum dig_status record(const struct dig_machine *const machine,
     dig->contact    = SAMPLES;
     dig->end        = SAMPLES;
     dig->after      = SAMPLES;
+    dig->after_end  = SAMPLES;
     return DIG_OK;
 }
 

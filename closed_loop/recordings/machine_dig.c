@@ -33,6 +33,9 @@ static const double told_share = 0.5;
 static const double dump_rad   = 0.12;
 static const double closed_rad = 0.02;
 
+// Of the depth of a dig: deeper below its ground the bucket digs, higher above it does not.
+static const double part_share = 0.3;
+
 struct dig_path_point dig_machine_dig_point(const struct dig_curve_set *const   set,
                                             const struct dig_machine_dig *const dig,
                                             const struct dig_front *const       front)
@@ -177,12 +180,13 @@ static double phi_at(const struct dig_sample *const sample)
 }
 
 // The load is gone once the bucket has opened and begins to close again.
-static size_t find_dumped(const struct dig_machine_dig *const dig)
+static size_t find_dumped(const struct dig_machine_dig *const dig, const size_t from,
+                          const size_t to)
 {
     double least_rad = INFINITY;
     double most_rad  = -INFINITY;
     size_t most      = dig->samples;
-    for (size_t i = dig->end; i < dig->samples; i++) {
+    for (size_t i = from; i < to; i++) {
         const double phi_rad = phi_at(&dig->sample[i]);
         least_rad            = fmin(least_rad, phi_rad);
         if (phi_rad > most_rad) {
@@ -196,6 +200,36 @@ static size_t find_dumped(const struct dig_machine_dig *const dig)
         }
     }
     return dig->samples;
+}
+
+static double tooth_z_m(const struct dig_path_point *const at, const double tooth_m)
+{
+    return at->z_m - tooth_m * cos(at->turn_m / tooth_m);
+}
+
+// Ends the air where the bucket goes to another dig: below the ground of this one, by a part of
+// what it is deep. The ground itself is known to such a part.
+static void leave_out_other_digs(const struct vertices *const v, const struct found *const found,
+                                 const double tooth_m, struct dig_machine_dig *const dig)
+{
+    const double ground_m  = tooth_z_m(&v->point[found->start], tooth_m);
+    double       deepest_m = ground_m;
+    for (size_t i = found->start; i < found->end; i++) {
+        deepest_m = fmin(deepest_m, tooth_z_m(&v->point[i], tooth_m));
+    }
+    const double part_m = part_share * (ground_m - deepest_m);
+    size_t       above  = 0; // the last sample that is clear of the ground
+    for (size_t i = 0; i < v->count; i++) {
+        const double off_m = tooth_z_m(&v->point[i], tooth_m) - ground_m;
+        if (off_m > part_m) {
+            above = v->sample[i];
+        } else if (off_m < -part_m && v->sample[i] < dig->before_end) {
+            dig->before = find_dumped(dig, v->sample[i], dig->before_end);
+        } else if (off_m < -part_m && v->sample[i] >= dig->after) {
+            dig->after_end = above;
+            return;
+        }
+    }
 }
 
 // middle_s: rig time from a twentieth of the path to the end less that.
@@ -243,7 +277,9 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
     dig->pace              = pace_of(set, dig, (to_s - from_s) / sqrt(dig->lambda));
     const double contact_s = dig->time_s[dig->contact < dig->samples ? dig->contact : 0];
     dig->before_end        = dig_machine_dig_sample_at(dig, contact_s - clear_s);
-    dig->after             = find_dumped(dig);
+    dig->after             = find_dumped(dig, dig->end, dig->samples);
+    dig->after_end         = dig->samples;
+    leave_out_other_digs(v, found, set->tooth_m, dig);
 }
 
 static enum dig_status place(const struct dig_machine *const   machine,
@@ -416,8 +452,8 @@ enum dig_status dig_machine_dig_make_air(const struct dig_machine *const        
         return status;
     }
     made.trajectory = -1;
-    made.before_end = made.contact = made.end = made.after = made.samples;
-    *dig                                                   = made;
+    made.before_end = made.contact = made.end = made.after = made.after_end = made.samples;
+    *dig                                                                    = made;
     return DIG_OK;
 }
 

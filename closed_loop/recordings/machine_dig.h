@@ -2,8 +2,10 @@
 // where in free air, told by the path alone. The soil's moment is not asked: what is wrong with a
 // machine must not decide where its air is.
 //
-//   air before     | dig along the trajectory |  lift, dump  | air after
-//   0 ......... before_end  contact ..... end          after ....... samples
+//     air before          | dig along the trajectory |  lift, dump  | air after
+//   before ....... before_end  contact ..... end          after ....... after_end
+//
+// Where the tooth is below the ground before or after, as in another dig, there is no air.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
 #define DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
@@ -29,10 +31,12 @@ struct dig_machine_dig {
     int                trajectory;
     double             lambda;
     struct dig_track   track;               // where the route lies, rig scale
+    size_t             before;              // first sample of the air before
     size_t             before_end, contact; // first samples not in the air before, in the soil
     size_t             end;                 // first sample past the trajectory
-    double             pace;  // duration of the table's trajectory / of this dig, at rig scale
-    size_t             after; // first sample of the air after the dump; samples: there is none
+    double             pace;      // duration of the table's trajectory / of this dig, at rig scale
+    size_t             after;     // first sample of the air after the dump; samples: there is none
+    size_t             after_end; // first sample not in it
 };
 
 /// Lays a recording along its trajectory (-1: along any of the set's). DIG_ENOMATCH: it holds no

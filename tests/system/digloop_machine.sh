@@ -139,4 +139,14 @@ check "nor is anything else, with more than even odds" within "$(sed -nE 's/.*"p
 check "the report says why, first" eval 'grep -q "\"no_air\": true" "$json" &&
     grep -q "next: no free air in the recordings: effects of the machine cannot be told" "$text"'
 
+# A second dig in the same file is no free air.
+mkdir "$work/twice"
+printf 'scene: %s\nmachine: %s\nrecordings:\n' "$PWD/config/scenes/rig.yaml" "$machine" >"$work/twice/campaign.yaml"
+for dig in simpleA:identify actual:fit; do
+    "$BIN/digrig" record "${digs}__simpleA.csv" "${digs}__actual.csv" --machine "$machine" --seed ${#dig} -o "$work/twice/${dig%:*}.csv" 2>>"$work/err"
+    echo "  - {file: ${dig%:*}.csv, trajectory: ${dig%:*}, role: ${dig#*:}}" >>"$work/twice/campaign.yaml"
+done
+trace twice
+check "a recording may hold a dig before it and one behind" grep -q '"verdict": \["none"\]' "$json"
+
 finish
