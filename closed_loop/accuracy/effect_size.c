@@ -37,26 +37,6 @@ static void weigh(const struct dig_curve_set *const           set,
     }
 }
 
-// The mean over a group's digs of what each one's moment has, and where all of them were measured.
-static void mean_of(const struct dig_whitened_digs *const batch, const double moment_Nm[][POINTS],
-                    const size_t g, double mean_Nm[POINTS], double *const first, double *const last)
-{
-    memset(mean_Nm, 0, POINTS * sizeof mean_Nm[0]);
-    *first = 0.0;
-    *last  = 1.0;
-    for (size_t i = 0; i < batch->digs; i++) {
-        if (batch->dig[i].group != g) {
-            continue;
-        }
-        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
-        *first                               = fmax(*first, dig->first);
-        *last                                = fmin(*last, dig->last);
-        for (size_t p = 0; p < POINTS; p++) {
-            mean_Nm[p] += moment_Nm[i][p] / (double)batch->group[g].digs;
-        }
-    }
-}
-
 static void left_of(void *const context, const double x[], double r[])
 {
     const struct moments *const m = context;
@@ -100,34 +80,50 @@ static double least_left(struct moments *const m, const double place[DIG_AXES])
     return least;
 }
 
-// Weighs a group's rig time and adds what its mean dig is uncertain by to *floor.
-static void begin_group(struct moments *const m, const struct dig_fitted *const fitted,
-                        const size_t g, const double first, const double last, double *const floor)
+// The means over a group's digs of what each one's moment has, where all of them were measured;
+// returns what the means are uncertain by, in squares.
+static double begin(const struct dig_whitened_digs *const batch,
+                    const struct dig_fitted *const fitted, const double moment_Nm[][POINTS],
+                    struct moments *const m)
 {
-    const struct dig_whitened_digs_group *const group = &m->batch->group[g];
-    double                                      sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    weigh(m->batch->soil->surface->set, group, first, last, m->weight[g]);
-    dig_judge_sd(m->batch->soil->surface, m->batch->scatter, group->trajectory, fitted->number, 0.0,
-                 sd);
-    for (size_t p = 0; p < POINTS; p++) {
-        const double one = m->weight[g][p] * sd[DIG_CHANNEL_MY_Nm][p * EVERY];
-        *floor += one * one * (1.0 / (double)group->digs + fitted->noise[g]);
+    double floor = 0.0;
+    *m           = (struct moments){ .batch = batch };
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &batch->group[g];
+        double                                      sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double                                      first = 0.0;
+        double                                      last  = 1.0;
+        for (size_t i = 0; i < batch->digs; i++) {
+            const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+            if (batch->dig[i].group != g) {
+                continue;
+            }
+            first = fmax(first, dig->first);
+            last  = fmin(last, dig->last);
+            for (size_t p = 0; p < POINTS; p++) {
+                m->target_Nm[g][p] += moment_Nm[i][p] / (double)group->digs;
+            }
+        }
+        weigh(batch->soil->surface->set, group, first, last, m->weight[g]);
+        dig_judge_sd(batch->soil->surface, batch->scatter, group->trajectory, fitted->number, 0.0,
+                     sd);
+        for (size_t p = 0; p < POINTS; p++) {
+            const double one = m->weight[g][p] * sd[DIG_CHANNEL_MY_Nm][p * EVERY];
+            floor += one * one * (1.0 / (double)group->digs + fitted->noise[g]);
+        }
     }
+    return floor;
 }
 
 // The size of what is added to the moments of the batch's digs.
 static double size_of(const struct dig_whitened_digs *const batch,
                       const struct dig_fitted *const fitted, const double added_Nm[][POINTS])
 {
-    struct moments m     = { .batch = batch };
-    double         floor = 0.0;
+    struct moments m;
+    const double   floor = begin(batch, fitted, added_Nm, &m);
     double         added = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
         double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double first;
-        double last;
-        mean_of(batch, added_Nm, g, m.target_Nm[g], &first, &last);
-        begin_group(&m, fitted, g, first, last, &floor);
         dig_response_surface_curve(batch->soil->surface, batch->group[g].trajectory, fitted->number,
                                    curve);
         for (size_t p = 0; p < POINTS; p++) {
@@ -156,8 +152,7 @@ double dig_effect_size_left(const struct dig_whitened_digs *const batch,
                             const struct dig_fitted *const        fitted)
 {
     assert(batch != NULL && fitted != NULL);
-    struct moments m     = { .batch = batch };
-    double         floor = 0.0;
+    struct moments m;
     double         dug_Nm[DIG_MEASURED_MAX][POINTS];
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
@@ -166,12 +161,7 @@ double dig_effect_size_left(const struct dig_whitened_digs *const batch,
                            dig->machine[DIG_CHANNEL_MY_Nm][p * EVERY];
         }
     }
-    for (size_t g = 0; g < batch->groups; g++) {
-        double first;
-        double last;
-        mean_of(batch, (const double(*)[POINTS])dug_Nm, g, m.target_Nm[g], &first, &last);
-        begin_group(&m, fitted, g, first, last, &floor);
-    }
+    const double floor = begin(batch, fitted, (const double(*)[POINTS])dug_Nm, &m);
     return floor > 0.0 ? sqrt(fmax(least_left(&m, fitted->number) / floor - 1.0, 0.0)) : 0.0;
 }
 

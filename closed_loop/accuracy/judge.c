@@ -7,57 +7,47 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { DRAWS = 1000 };
-
-// Mean over the table's entries of (sd / amplitude)^2 at one point.
-static double relative_variance(const struct dig_response_surface *const surface, const size_t t,
-                                const size_t c, const size_t k,
-                                const double amplitude[][DIG_FORCE_CHANNELS])
-{
-    const struct dig_curve_set *const set = surface->set;
-    double                            sum = 0.0;
-    double                            n   = 0.0;
-    for (size_t e = 0; e < set->entries; e++) {
-        const size_t slot = e * set->trajectories + t;
-        const double sd   = (double)set->curve[slot].sd[c][k] / amplitude[e][c];
-        if (set->packings[slot] > 0 && isfinite(sd)) {
-            const double weight = fmax((double)set->packings[slot] - 1.0, 0.5);
-            sum += weight * sd * sd;
-            n += weight;
-        }
-    }
-    return n > 0.0 ? sum / n : 0.0;
-}
 
 void dig_judge_sd(const struct dig_response_surface *const surface,
                   const struct dig_scatter *const scatter, const size_t trajectory,
                   const double place[DIG_AXES], const double noise,
                   double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
-    const struct dig_curve_set *const set = surface->set;
+    const struct dig_curve_set *const set                                       = surface->set;
+    double                            sum[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
+    double                            n[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]   = { { 0.0 } };
     double                            feature[DIG_FEATURES];
     double                            size[DIG_FORCE_CHANNELS];
     dig_response_surface_features(surface, trajectory, place, feature, size);
     const double strength = dig_soil_strength(surface, place, size);
     const double factor   = dig_scatter_factor(scatter, trajectory, strength) * (1.0 + noise);
 
-    double(*const amplitude)[DIG_FORCE_CHANNELS] = calloc(set->entries, sizeof *amplitude);
-    memset(sd, 0, DIG_FORCE_CHANNELS * sizeof sd[0]);
-    for (size_t e = 0; amplitude != NULL && e < set->entries; e++) {
-        double at[DIG_AXES];
+    // Mean over the table's entries of (sd / amplitude)^2 at each point.
+    for (size_t e = 0; e < set->entries; e++) {
+        const size_t slot   = e * set->trajectories + trajectory;
+        const double weight = fmax((double)set->packings[slot] - 1.0, 0.5);
+        double       at[DIG_AXES];
+        double       amplitude[DIG_FORCE_CHANNELS];
         dig_response_surface_place(surface, &set->gravel[e], at);
-        dig_response_surface_features(surface, trajectory, at, feature, amplitude[e]);
-    }
-    for (size_t c = 0; amplitude != NULL && c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            sd[c][k] = size[c] * sqrt(factor * relative_variance(surface, trajectory, c, k,
-                                                                 (const double(*)[3])amplitude));
+        dig_response_surface_features(surface, trajectory, at, feature, amplitude);
+        for (size_t i = 0; i < (size_t)DIG_FORCE_CHANNELS * DIG_CURVE_POINTS; i++) {
+            const size_t c   = i / DIG_CURVE_POINTS;
+            const size_t k   = i % DIG_CURVE_POINTS;
+            const double own = (double)set->curve[slot].sd[c][k] / amplitude[c];
+            if (set->packings[slot] > 0 && isfinite(own)) {
+                sum[c][k] += weight * own * own;
+                n[c][k] += weight;
+            }
         }
     }
-    free(amplitude);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            sd[c][k] = size[c] * sqrt(factor * (n[c][k] > 0.0 ? sum[c][k] / n[c][k] : 0.0));
+        }
+    }
 }
 
 void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],

@@ -11,7 +11,7 @@
 
 enum { LEAST_FEATURES = DIG_FEATURE_BINS / 2 };
 
-static void features_of(const struct dig_measured *const dig, double feature[DIG_FEATURES])
+void dig_whitened_digs_features(const struct dig_measured *const dig, double feature[DIG_FEATURES])
 {
     double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
@@ -303,7 +303,7 @@ enum dig_status dig_whitened_digs_make(const struct dig_soil *const    soil,
         dig->group                              = group_of(batch, t);
         dig->measured                           = i;
         batch->group[dig->group].digs++;
-        features_of(&measured[i], feature[batch->digs++]);
+        dig_whitened_digs_features(&measured[i], feature[batch->digs++]);
     }
     enum dig_status status = batch->digs > 0 ? DIG_OK : DIG_ENOMATCH;
     for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {

@@ -54,6 +54,9 @@ dig_whitened_digs_make(const struct dig_soil *soil, const struct dig_scatter *sc
                        const struct dig_measured measured[], const bool take[],
                        const double place[DIG_AXES], struct dig_whitened_digs *batch);
 
+/// Features of a dig, machine effects off.
+void dig_whitened_digs_features(const struct dig_measured *dig, double feature[DIG_FEATURES]);
+
 /// Writes y of features (units of the table) in a group: the first group->features of it, then 0.
 /// Half a microsecond.
 void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *group,

@@ -222,7 +222,7 @@ static void find_range(const struct room *const r, double *const first_m, double
 static void fit_all(struct room *const r, const struct dig_fitted *const plain,
                     struct dig_rock *const rock)
 {
-    struct place place[PLACES_MAX];
+    struct place place[PLACES_MAX] = { { .ahead_m = 0.0 } };
     double       first_m;
     double       last_m;
     double       most_squares[DIG_TRAJECTORY_MAX] = { 0.0 };

@@ -25,6 +25,30 @@ struct dig_unlisted dig_unlisted_find(const struct dig_whitened_digs *const batc
     return found;
 }
 
+// What is left of the digs' curves, dig by dig and in the mean of each group.
+struct left {
+    double of[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double mean[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+};
+
+static void fill_left(const struct dig_whitened_digs *const batch,
+                      const struct dig_fitted *const fitted, struct left *const left)
+{
+    memset(left->mean, 0, sizeof left->mean);
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
+        const size_t                     g   = batch->dig[i].group;
+        double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_fitted_curve(batch->soil, fitted, dig, curve);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                left->of[i][c][k] = dig->value[c][k] - dig->machine[c][k] - curve[c][k];
+                left->mean[g][c][k] += left->of[i][c][k] / (double)batch->group[g].digs;
+            }
+        }
+    }
+}
+
 // How much of a group's mean residual is more than its noise: 0 … 1.
 static double credible(const struct dig_whitened_digs *const batch,
                        const struct dig_fitted *const fitted, const size_t g)
@@ -41,78 +65,38 @@ static double credible(const struct dig_whitened_digs *const batch,
     return squares > expected ? 1.0 - expected / squares : 0.0;
 }
 
-// What is left of a dig's curves.
-static void left_of(const struct dig_whitened_digs *const batch,
-                    const struct dig_fitted *const fitted, const size_t i,
-                    double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
+// What is gained, in squares of the moment, when each dig of a group is predicted from so much of
+// the others' residuals.
+static double gain_of(const struct dig_whitened_digs *const batch, const struct left *const left,
+                      const double by, const size_t g)
 {
-    const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
-    double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    dig_fitted_curve(batch->soil, fitted, dig, curve);
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            left[c][k] = dig->value[c][k] - dig->machine[c][k] - curve[c][k];
-        }
-    }
-}
-
-// The mean of what is left of a group's digs.
-static void mean_left(const struct dig_whitened_digs *const batch,
-                      const struct dig_fitted *const fitted, const size_t g,
-                      double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
-{
-    memset(mean, 0, DIG_FORCE_CHANNELS * sizeof mean[0]);
-    for (size_t i = 0; i < batch->digs; i++) {
-        double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        if (batch->dig[i].group != g) {
-            continue;
-        }
-        left_of(batch, fitted, i, left);
-        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                mean[c][k] += left[c][k] / (double)batch->group[g].digs;
-            }
-        }
-    }
-}
-
-// What is gained, in squares of the moment, when each dig of a group is predicted from the others'
-// residuals.
-static double gain_of(const struct dig_whitened_digs *const batch,
-                      const struct dig_fitted *const fitted, const size_t g)
-{
-    const double by = credible(batch, fitted, g);
-    const double n  = (double)batch->group[g].digs;
-    double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    const double n    = (double)batch->group[g].digs;
     double       gain = 0.0;
-    mean_left(batch, fitted, g, mean);
-    for (size_t i = 0; n > 1.0 && i < batch->digs; i++) {
-        double left[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        if (batch->dig[i].group != g) {
-            continue;
-        }
-        left_of(batch, fitted, i, left);
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double own    = left[DIG_CHANNEL_MY_Nm][k];
-            const double others = (n * mean[DIG_CHANNEL_MY_Nm][k] - own) / (n - 1.0);
+    for (size_t i = 0; i < batch->digs; i++) {
+        for (size_t k = 0; batch->dig[i].group == g && k < DIG_CURVE_POINTS; k++) {
+            const double own    = left->of[i][DIG_CHANNEL_MY_Nm][k];
+            const double others = (n * left->mean[g][DIG_CHANNEL_MY_Nm][k] - own) / (n - 1.0);
             gain += own * own - pow(own - by * others, 2.0);
         }
     }
     return gain;
 }
 
-// Whether a trajectory's mean residual is worth taking off. Digs that differ from each other rather
-// than from the table are made worse by it; of a dig alone the other trajectories tell.
+// Leaves a trajectory's mean residual where it is not worth taking off. Digs that differ from each
+// other rather than from the table are made worse by it; of a dig alone the other trajectories
+// tell.
 static void choose_groups(const struct dig_whitened_digs *const batch,
-                          const struct dig_fitted *const fitted, bool helps[DIG_TRAJECTORY_MAX])
+                          const struct left *const left, double by[DIG_TRAJECTORY_MAX])
 {
     bool all = true;
     for (size_t g = 0; g < batch->groups; g++) {
-        helps[g] = batch->group[g].digs < 2 || gain_of(batch, fitted, g) > 0.0;
-        all      = all && helps[g];
+        if (batch->group[g].digs > 1 && !(gain_of(batch, left, by[g], g) > 0.0)) {
+            by[g] = 0.0;
+            all   = false;
+        }
     }
     for (size_t g = 0; g < batch->groups; g++) {
-        helps[g] = helps[g] && (all || batch->group[g].digs > 1);
+        by[g] = all || batch->group[g].digs > 1 ? by[g] : 0.0;
     }
 }
 
@@ -120,24 +104,26 @@ void dig_unlisted_correct(const struct dig_whitened_digs *const batch,
                           const struct dig_fitted *const        fitted,
                           struct dig_model_unlisted *const      share)
 {
-    bool helps[DIG_TRAJECTORY_MAX] = { false };
+    struct left left;
+    double      by[DIG_TRAJECTORY_MAX];
     memset(share->share, 0, sizeof share->share);
-    choose_groups(batch, fitted, helps);
+    fill_left(batch, fitted, &left);
     for (size_t g = 0; g < batch->groups; g++) {
-        const size_t t  = batch->group[g].trajectory;
-        const double by = helps[g] ? credible(batch, fitted, g) : 0.0;
-        double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double       mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        mean_left(batch, fitted, g, mean);
-        dig_fitted_curve(batch->soil, fitted, dig_whitened_digs_first(batch, g), curve);
+        by[g] = credible(batch, fitted, g);
+    }
+    choose_groups(batch, &left, by);
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_measured *const first = dig_whitened_digs_first(batch, g);
+        double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        dig_fitted_curve(batch->soil, fitted, first, curve);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             double squares = 0.0;
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                 squares += curve[c][k] * curve[c][k] / DIG_CURVE_POINTS;
             }
-            for (size_t k = 0;
-                 dig_whitened_digs_first(batch, g)->measured[c] && k < DIG_CURVE_POINTS; k++) {
-                share->share[t][c][k] = (float)(by * mean[c][k] / fmax(sqrt(squares), 1e-12));
+            for (size_t k = 0; first->measured[c] && k < DIG_CURVE_POINTS; k++) {
+                share->share[batch->group[g].trajectory][c][k] =
+                    (float)(by[g] * left.mean[g][c][k] / fmax(sqrt(squares), 1e-12));
             }
         }
     }

@@ -116,15 +116,8 @@ void dig_trace_fill_residuals(const struct dig_trace_work *const w,
             if (w->batch->dig[i].group != g) {
                 continue;
             }
-            double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-            double                           feature[DIG_FEATURES];
-            const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
-            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                    curve[c][k] = dig->value[c][k] - dig->machine[c][k];
-                }
-            }
-            dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
+            double feature[DIG_FEATURES];
+            dig_whitened_digs_features(&w->measured[w->batch->dig[i].measured], feature);
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 mean[f] += feature[f] / (double)group->digs;
             }
