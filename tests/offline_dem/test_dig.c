@@ -132,7 +132,7 @@ TEST(what_a_dig_cannot_begin_with_is_refused)
     struct dig_scene     scene = small_scene();
     double               at[2] = { 0.01, 0.0101 }, radius[2] = { GRAIN_m, GRAIN_m };
     const struct dig_bed bed = { .grains = 2, .x_m = at, .y_m = at, .z_m = at, .radius_m = radius };
-    expect_refusal(&scene, &gravel, &bed, "bed: grains");
+    expect_refusal(&scene, &gravel, &bed, "bed: grains 0 and 1 overlap by ");
     // Behind a wall by more than three tenths of a radius, and nearly so.
     at[0] = 0.69 * GRAIN_m;
     at[1] = 0.02;

@@ -8,18 +8,12 @@ speed=4
 series 7
 config can "$sealed_can" "time_scale: $speed"
 
-log can
-start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"
-daemon=$started
-wait_for 5 grep -q "waiting for bus" "$work/can.log"
+daemon_begins can
 serve_series can --can vcan0 --can-sealed \
     --fault "$(fault drop=0.01 1)" --fault "$(fault drop=0.1 2)" --fault "$(fault drop=0.5 3)" \
     --fault "$(fault duplicate=0.2 4)" --fault "$(fault reorder=0.2 5)" --fault "$(fault corrupt=0.2 6)" \
     --fault "$(fault delay=0.1 7)"
-stop "$daemon"
-check "the daemon ends with exit status 0" [ "$status" = 0 ]
-read_log can
-f=$work/can.txt
+daemon_ends can
 judge can
 
 n=0

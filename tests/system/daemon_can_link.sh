@@ -24,17 +24,11 @@ trouble() { # a dig takes some 12 s
     set_clock "-2 hours"
 }
 
-log can
-start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"
-daemon=$started
-wait_for 5 grep -q "waiting for bus" "$work/can.log"
+daemon_begins can
 start_series can --can vcan0 --can-sealed
 trouble >"$work/trouble.log" 2>&1
 ends "$rig"
-stop "$daemon"
-check "the daemon ends with exit status 0" [ "$status" = 0 ]
-read_log can
-f=$work/can.txt
+daemon_ends can
 judge can
 
 lost=$(rig can_lost)

@@ -15,18 +15,12 @@ trouble() {
     cansend vcan0 20000040#0000000000000000
 }
 
-log can
-start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"
-daemon=$started
-wait_for 5 grep -q "waiting for bus" "$work/can.log"
+daemon_begins can
 start_series can --can vcan0 --can-sealed --fault "$(fault frozen 1)" --fault "$(fault stuck-pressures 2)" \
     --fault "$(fault stuck-angles 3)"
 trouble >"$work/trouble.log" 2>&1
 ends "$rig"
-stop "$daemon"
-check "the daemon ends with exit status 0" [ "$status" = 0 ]
-read_log can
-f=$work/can.txt
+daemon_ends can
 judge can 3
 
 # Digs 1 to 3 have frozen values and identify nothing; whether they count as digs is left open. The

@@ -32,15 +32,12 @@ run() { # NAME MACHINE MORE DIG…: $estimate and $prediction are its errors
     config "$name" "$modbus" "time_scale: $speed
 $more"
     sed -i "s|^table:.*|table: $table|" "$work/$name.yaml"
-    log "$name"
-    start "$work/$name.log" "$BIN/digsightd" -c "$work/$name.yaml"
-    daemon=$started
+    daemon_begins "$name"
     start "$work/$name.rig.err" "$BIN/digrig" serve "$@" --machine "$as" --modbus-tcp "127.0.0.1:$port" \
         --speed "$speed" --start-delay 2
     rig=$started
     ends "$rig"
-    stop "$daemon"
-    read_log "$name"
+    daemon_ends "$name"
     "$helpers/loop_judge" "$work/$name.lcm" "$work/truth.csv" actual >"$work/$name.judged" 2>>"$work/$name.err"
     estimate=$(awk '$1 == "estimate" { print $2 }' "$work/$name.judged")
     prediction=$(awk '$1 == "prediction" { print $2 }' "$work/$name.judged")

@@ -16,9 +16,7 @@ wait_for 5 grep -q serving "$work/rig.err"
 start "$work/daemon.log" "$BIN/digsightd" -c "$work/tcp.yaml"
 daemon=$started
 ends "$rig"
-stop "$daemon"
-read_log tcp
-f=$work/tcp.txt
+daemon_ends tcp
 check "values that are not available are counted" within "$(last health "$f" $h_not_available)" 100 1e6
 check "values out of range are counted" within "$(last health "$f" $h_out_of_range)" 100 1e6
 check "a counter that stands still is counted" within "$(last health "$f" $h_frozen)" 10 1e6

@@ -38,11 +38,8 @@ at $off_s route add
 check "a network that goes away in a dig is said" grep -q "LCM .*: sending failed; joining again" "$work/daemon.log"
 check "so it is when it comes back" wait_for 20 eval '[ "$(grep -c "publishing on" "$work/daemon.log")" = 2 ]'
 ends "$rig"
-stop "$daemon"
-check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
-read_log tcp
+daemon_ends tcp
 judge tcp
-f=$work/tcp.txt
 # 400 polls a second of the clock; joining again takes up to a second and a half after the network is back.
 unsent=$(last health "$f" $h_unsent)
 check "what could not be sent is counted" within "$unsent" \

@@ -48,6 +48,28 @@ read_log() { # NAME: ends the recording and prints it into $work/NAME.txt
     "$helpers/daemon_log" "$work/$1.lcm" >"$work/$1.txt" 2>"$work/$1.err"
 }
 
+daemon_begins() { # NAME [CONFIG]: recorded into $work/NAME.lcm, its words into $work/NAME.log; until it has sought its bus
+    log "$1"
+    start "$work/$1.log" "$BIN/digsightd" -c "$work/${2-$1}.yaml"
+    daemon=$started
+    wait_for 5 grep -qE "(waiting for bus|running) \(" "$work/$1.log"
+}
+
+daemon_ends() { # NAME: by SIGTERM; what it published is in $f
+    stop "$daemon"
+    check "$1: SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
+    read_log "$1"
+    f=$work/$1.txt
+}
+
+replay() { # NAME: a daemon to the end of its recording, recorded likewise, its words into $work/daemon.log; its exit status
+    log "$1"
+    run "$work/daemon.log" "$BIN/digsightd" -c "$work/$1.yaml"
+    local rc=$?
+    read_log "$1"
+    return "$rc"
+}
+
 make_digs() { # makes the table and the digs, whose truth is friction 0.5, rolling 0.4, density 2200
     "$helpers/daemon_data" "$scene" "$work" >"$work/data.log" 2>&1
 }

@@ -5,23 +5,19 @@
 make_digs
 speed=4
 config tcp "$modbus" "time_scale: $speed"
-log tcp
-start "$work/daemon.log" "$BIN/digsightd" -c "$work/tcp.yaml"
-daemon=$started
-check "a bus that is absent is said" wait_for 5 grep -q "waiting for bus" "$work/daemon.log"
-check "and why" grep -q "127.0.0.1:$port.*refused" "$work/daemon.log"
+daemon_begins tcp
+check "a bus that is absent is said" grep -q "waiting for bus" "$work/tcp.log"
+check "and why" grep -q "127.0.0.1:$port.*refused" "$work/tcp.log"
 # It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
 digs=("$work/simpleA.csv" "$work/actual.csv")
 serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 6
-check "a bus that appears later is found" grep -q "running" "$work/daemon.log"
-check "a bus that goes away is said" wait_for 5 eval '[ "$(grep -c "waiting for bus" "$work/daemon.log")" -ge 2 ]'
-stop "$daemon"
-check "SIGTERM ends it with exit status 0" [ "$status" = 0 ]
-read_log tcp
-check "the gravel is identified" identified "$work/tcp.txt"
-check "the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/tcp.txt")" -ge 10 ]
-check "health is published while the bus is absent" grep -q '^health waiting_for_bus' "$work/tcp.txt"
-check "health names the trouble" grep -q '^health waiting_for_bus .*refused' "$work/tcp.txt"
+check "a bus that appears later is found" grep -q "running" "$work/tcp.log"
+check "a bus that goes away is said" wait_for 5 eval '[ "$(grep -c "waiting for bus" "$work/tcp.log")" -ge 2 ]'
+daemon_ends tcp
+check "the gravel is identified" identified "$f"
+check "the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$f")" -ge 10 ]
+check "health is published while the bus is absent" grep -q '^health waiting_for_bus' "$f"
+check "health names the trouble" grep -q '^health waiting_for_bus .*refused' "$f"
 check "only functions that read were asked for" \
     eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$rig_json" &&
           grep -q "\"modbus_refused\": {}" "$rig_json"'
@@ -29,20 +25,17 @@ check "only functions that read were asked for" \
 # Pressures in another block of registers, at half the rate.
 config blocks "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_blocks.yaml}}" \
     "time_scale: $speed"
-log blocks
-start "$work/blocks.log" "$BIN/digsightd" -c "$work/blocks.yaml"
-daemon=$started
+daemon_begins blocks
 digs=("$work/simpleA.csv")
 serve_series blocks --modbus-tcp "127.0.0.1:$port" --start-delay 2
-stop "$daemon"
-read_log blocks
-check "registers far apart are asked for in blocks and identify the gravel" identified "$work/blocks.txt"
+daemon_ends blocks
+check "registers far apart are asked for in blocks and identify the gravel" identified "$f"
 check "and in no others" \
     eval 'grep -q "\"modbus_served\": {\"4\": [0-9]*}" "$work/blocks.json" && grep -q "\"modbus_refused\": {}" "$work/blocks.json"'
 # Angles at 400, pressures at 200 requests a second: a sample for each of the pressures.
 served=$(sed -nE 's/.*"modbus_served": \{"4": ([0-9]+)\}.*/\1/p' "$work/blocks.json")
 check "a sample comes of the slower block, not of every request" \
-    within "$(last samples "$work/blocks.txt" 2)" $((served / 5)) $((served / 2))
+    within "$(last samples "$f" 2)" $((served / 5)) $((served / 2))
 
 # Boom's and arm's pressures in a block of their own, refused for the first half of the dig and then there again.
 sed -E -e 's/register: 0, registers: 5/register: 0, registers: 12/' -e 's/register: 1005, registers: 6/register: 1005, registers: 4/' \
@@ -50,16 +43,11 @@ sed -E -e 's/register: 0, registers: 5/register: 0, registers: 12/' -e 's/regist
     config/signals/modbus_blocks.yaml >"$work/force.map.yaml"
 config force "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: force.map.yaml}}" "time_scale: $speed"
 series 1
-log force
 start_series force --modbus-tcp "127.0.0.1:$port" --start-delay 1 \
     --fault "far@$(awk -v c="${contacts[0]}" 'BEGIN { printf "%.2f:%.2f", c - 3, 9 }')"
-pass 0.1
-start "$work/force.log" "$BIN/digsightd" -c "$work/force.yaml"
-daemon=$started
+daemon_begins force
 ends "$rig"
-stop "$daemon"
-read_log force
-f=$work/force.txt
+daemon_ends force
 bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
 check "without the block of the other pressures the moment goes on" \
     within "$(grep -cF " 0 \"$bare\"" <(grep '^estimate' "$f"))" 200 1e9
@@ -73,17 +61,12 @@ check "the force is told before and again when the block is back" \
 
 # The same block without any answer, from the first request to the last: it is asked now and then only, so
 # that the moment hardly loses a sample.
-log mute
 start_series mute --modbus-tcp "127.0.0.1:$port" --start-delay 1 --fault far-silent@0
-pass 0.1
 began=$("$simclock" now)
-start "$work/mute.log" "$BIN/digsightd" -c "$work/force.yaml"
-daemon=$started
+daemon_begins mute force
 ends "$rig"
 took=$(since "$began")
-stop "$daemon"
-read_log mute
-f=$work/mute.txt
+daemon_ends mute
 check "a block that does not answer is said to be silent" grep -q "registers 1005 … 1008: silent while others answer" "$work/mute.log"
 check "it is asked three times, then every five seconds" within "$(last health "$f" $h_timeouts)" 3 $((4 + took / 5))
 check "the moment identifies the gravel beside it" identified "$f"

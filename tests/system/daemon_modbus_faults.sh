@@ -12,10 +12,7 @@ match: {state: full/match.json}"
 mkdir "$work/full" # where nothing can be written: a disk without room, as far as the daemon can tell
 mkdir "$work/full/match.json.part"
 
-log tcp
-start "$work/tcp.log" "$BIN/digsightd" -c "$work/tcp.yaml"
-daemon=$started
-wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
+daemon_begins tcp
 # The table it runs on: cut off, asked for, refused; put back, asked for, taken; another one in its place,
 # asked for in a dig; removed.
 change_tables() {
@@ -37,10 +34,7 @@ start_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 --fault "$(fault
     --fault "$(fault slow=0.03 3)" --fault "missing@$(awk -v c="${contacts[3]}" 'BEGIN { print c + 3 }'):4"
 change_tables
 ends "$rig"
-stop "$daemon"
-check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
-read_log tcp
-f=$work/tcp.txt
+daemon_ends tcp
 judge tcp
 digs_told=$(last health "$f" $h_digs)
 check "the digs after the faults identify the gravel" \
@@ -59,9 +53,7 @@ check "nothing was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
 cp "$work/good.sqlite" "$work/table.sqlite"
 sed -i 's|full/match.json|match.json|' "$work/tcp.yaml"
 series 2
-log gone
-start "$work/gone.log" "$BIN/digsightd" -c "$work/tcp.yaml"
-daemon=$started
+daemon_begins gone tcp
 # It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
 start_series first --modbus-tcp "127.0.0.1:$port" --start-delay 6
 pass "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"
@@ -76,10 +68,8 @@ log back
 # It is back where its motion begins: as long away as a machine takes for that, and then found within two seconds.
 pass 4
 serve_series back --modbus-tcp "127.0.0.1:$port" --start-delay 6
-stop "$daemon"
-read_log back
+daemon_ends back
 judge back
-f=$work/back.txt
 check "the server is found again" within "$(last health "$f" $h_reconnects)" 1 100
 check "the gravel is identified after that" identified "$f"
 

@@ -7,16 +7,10 @@ make_digs
 speed=4
 series 6
 config tcp "$modbus" "time_scale: $speed"
-log tcp
-start "$work/tcp.log" "$BIN/digsightd" -c "$work/tcp.yaml"
-daemon=$started
-wait_for 5 grep -q "waiting for bus" "$work/tcp.log"
+daemon_begins tcp
 serve_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 --fault "$(fault drop=0.1 1)" --fault "$(fault drop=0.5 2)" \
     --fault "$(fault corrupt=0.1 3)" --fault "$(fault frozen 4)" --fault "$(fault stuck-pressures 5)"
-stop "$daemon"
-check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
-read_log tcp
-f=$work/tcp.txt
+daemon_ends tcp
 judge tcp
 digs_told=$(last health "$f" $h_digs)
 check "the dig after them identifies the gravel" [ "$(judged dig 6 "$digs_told")" = 1 ]

@@ -11,10 +11,7 @@ check "--check loads everything and says what it found" \
     eval '"$BIN/digsightd" -c "$work/csv.yaml" --check >"$work/check.txt" &&
           grep -q "scene rig" "$work/check.txt" && grep -q "zx200_trench" "$work/check.txt"'
 
-log csv
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/csv.yaml"
-check "a replay ends by itself with exit status 0" [ $? = 0 ]
-read_log csv
+check "a replay ends by itself with exit status 0" replay csv
 rows=$(($(grep -vc '^#' "$work/run.csv") - 1))
 # LCM promises nothing: a receiver that does not get its turn in time loses messages.
 check "the lines of the recording are published as samples" \
@@ -66,18 +63,14 @@ check "the match says that it is of moment and forces" [ "$(forces "$work/csv.tx
 "$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
     -o "$work/thrice.csv" 2>"$work/rig.err"
 config thrice "{kind: replay, replay: {file: thrice.csv, speed: 10}}" "match: {state: thrice.json}"
-log thrice
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/thrice.yaml"
-read_log thrice
+replay thrice
 check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(NF - 2) } END { print n }' "$work/thrice.txt")" = 3 ]
 check "which narrows the interval" awk '$1 == "match" && !$NF { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
 check "and keeps the gravel" identified "$work/thrice.txt"
 check "and the digs in the state file" [ "$(grep -c moment_Nm "$work/thrice.json")" = 3 ]
 check "with their forces" [ "$(grep -c '"force": {' "$work/thrice.json")" = 3 ]
 config fourth "{kind: replay, replay: {file: run.csv, speed: 10}}" "match: {state: thrice.json}"
-log fourth
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/fourth.yaml"
-read_log fourth
+replay fourth
 check "a daemon started anew goes on with them, forces and all" \
     [ "$(awk '$1 == "match" && $3 == 0 { n = $(NF - 2) } END { print n }' "$work/fourth.txt") $(forces "$work/fourth.txt")" = "4 1" ]
 # Without a machine's noise the packings' scatter alone weighs: all of it is one factor, so what counts is the curve's shape.
@@ -95,16 +88,12 @@ awk -F, '/^[^0-9]/ { print; next } $1 < 0.7 * end' \
 "$BIN/digrig" record "$work/simpleA.csv" "$work/half.csv" "$work/actual.csv" --machine "$machine" \
     -o "$work/aborts.csv" 2>"$work/rig.err"
 config aborts "{kind: replay, replay: {file: aborts.csv, speed: 10}}"
-log aborts
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/aborts.yaml"
-read_log aborts
+replay aborts
 check "a dig that was aborted is counted as such" [ "$(endings "$work/aborts.txt")" = "1 1 0" ]
 check "and said" grep -Eq 'dig 2 \(actual\): aborted at [67][0-9] % of its path' "$work/daemon.log"
 check "the gravel stays known" identified "$work/aborts.txt"
 
-log again
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/again.yaml"
-read_log again
+replay again
 check "the log of the daemon is accepted as a recording and gives the gravel again" identified "$work/again.txt"
 identify() { # NAME RECORDING…: with digloop, offline
     "$BIN/digloop" identify "$work/table.sqlite" "${@:2}" --json >"$work/$1.json" 2>"$work/$1.err" &&
@@ -135,9 +124,7 @@ config bucket "{kind: replay, replay: {file: bucket.csv, speed: 5}}"
 bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
 "$BIN/digsightd" -c "$work/bucket.yaml" --check >"$work/check.txt"
 check "--check says what is not measured" grep -q "not measured: $bare;" "$work/check.txt"
-log bucket
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/bucket.yaml"
-read_log bucket
+replay bucket
 check "the bucket's pressures alone identify the gravel" identified "$work/bucket.txt"
 check "and the match says so" [ "$(forces "$work/bucket.txt")" = 0 ]
 check "every estimate has the moment and names what is missing of the force" \
@@ -196,9 +183,7 @@ check "a table without a machine does not tell the scale" eval 'shift_of --table
 "$BIN/digrig" record "$work/deep.csv" "$work/deep.csv" "$work/far.csv" --machine "$machine" -o "$work/ways.csv" 2>"$work/rig.err"
 config ways "{kind: replay, replay: {file: ways.csv, speed: 20}}" "publish: {estimate_every: 10}"
 sed -i 's/table.sqlite/ways.sqlite/' "$work/ways.yaml"
-log ways
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/ways.yaml"
-read_log ways
+replay ways
 # DEPTH, ATTACK_deg, MATCHED_DEPTH, MATCHED_ATTACK_deg of the last match: a dig in the table, whose depth is told to a tenth.
 check "the match says how deep the dig was" within "$(last match "$work/ways.txt" 18)" 1.02 1.22
 check "and how its bucket stood" within "$(last match "$work/ways.txt" 19)" -1 1

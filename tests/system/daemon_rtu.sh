@@ -13,15 +13,10 @@ config rtu "{kind: modbus-rtu, modbus: {device: $work/controller, baud: 115200, 
 export DIG_SIMCLOCK_TERMINALS=1
 start "$work/socat.log" socat "pty,raw,echo=0,link=$work/controller" "pty,raw,echo=0,link=$work/rig"
 until [ -e "$work/rig" ] && [ -e "$work/controller" ]; do sleep 0.05; done
-log rtu
-start "$work/daemon.log" "$BIN/digsightd" -c "$work/rtu.yaml"
-daemon=$started
+daemon_begins rtu
 serve_series rtu --modbus-rtu "$work/rig:115200" --start-delay 2 --fault "$(fault corrupt=0.1 1)"
-stop "$daemon"
-check "SIGTERM ends the daemon with exit status 0" [ "$status" = 0 ]
-read_log rtu
+daemon_ends rtu
 judge rtu
-f=$work/rtu.txt
 check "the gravel is identified over RTU" identified "$f"
 check "by the dig on the good line" [ "$(judged dig 6 "$(last health "$f" $h_digs)")" = 1 ]
 # The three bytes take the answer's place; what is left of it is no answer either, and the next one is doubted.

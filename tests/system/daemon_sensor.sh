@@ -14,10 +14,7 @@ check "digrig records what the sensor reads" \
 config csv "{kind: replay, replay: {file: run.csv, speed: 5}}"
 "$BIN/digsightd" -c "$work/csv.yaml" --check >"$work/check.txt" 2>&1
 check "--check finds nothing missing" eval '[ $? = 0 ] && grep -q rig_sensor "$work/check.txt" && ! grep -q "not measured" "$work/check.txt"'
-log csv
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/csv.yaml"
-check "the daemon replays it to the end" [ $? = 0 ]
-read_log csv
+check "the daemon replays it to the end" replay csv
 check "the gravel is identified" identified "$work/csv.txt"
 check "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/csv.txt")" = 1 ]
 check "the actual dig is predicted while it goes on" [ "$(grep -c '^prediction 1 actual' "$work/csv.txt")" -ge 5 ]
@@ -38,19 +35,15 @@ check "and from the daemon's log" near "$direct" "$(identify "$work/csv.lcm" --m
 # The same from a bus.
 config bus "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_sensor.yaml}}" \
     "time_scale: $speed"
-log bus
 start "$work/rigbus.err" "$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
     --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 1
 rig=$started
-pass 0.1
-start "$work/bus.log" "$BIN/digsightd" -c "$work/bus.yaml"
-daemon=$started
+daemon_begins bus
 ends "$rig"
-stop "$daemon"
-read_log bus
-check "from Modbus the gravel is identified, too" identified "$work/bus.txt"
-check "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$work/bus.txt")" = 1 ]
-check "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$work/bus.txt")" -ge 5 ]
+daemon_ends bus
+check "from Modbus the gravel is identified, too" identified "$f"
+check "by moment and forces" [ "$(awk '$1 == "match" { f = $(NF - 3) } END { print f }' "$f")" = 1 ]
+check "and the actual dig is predicted" [ "$(grep -c '^prediction 1 actual' "$f")" -ge 5 ]
 
 refused() { # STATUS WORDS FILE: exit status 2, and the words in the file
     [ "$1" = 2 ] && grep -q "$2" "$3"

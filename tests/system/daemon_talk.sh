@@ -27,16 +27,13 @@ check "what is no flood is said as ever" grep -q 'dig 1 (simpleA): friction' "$w
 # A slave that answers every fourth request with an exception.
 config bad "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 200, map: $PWD/config/signals/modbus_default.yaml}}" \
     "time_scale: 2"
-log bad
 began=$("$simclock" now)
-start "$work/bad.log" "$BIN/digsightd" -c "$work/bad.yaml"
-daemon=$started
+daemon_begins bad
 run "$work/serve.err" "$BIN/digrig" serve "$work/simpleA.csv" --machine "$machine" --speed 2 --modbus-tcp "127.0.0.1:$port" \
     --start-delay 1 --fault exception=0.25@0:60
-stop "$daemon"
+daemon_ends bad
 took=$(since "$began")
-read_log bad
-bad=$(last health "$work/bad.txt" $h_malformed)
+bad=$(last health "$f" $h_malformed)
 lines=$(grep -c 'dropped so far' "$work/bad.log")
 most=$(sed -nE 's/.*frozen, [0-9]+ NaN, ([0-9]+) malformed.*/\1/p' "$work/bad.log" | tail -n 1)
 echo "      $took s: $bad exceptions, told in $lines lines, the last of $most"

@@ -36,9 +36,7 @@ trap 'tmux kill-server 2>/dev/null; kill ${prometheus-} ${daemon-} 2>/dev/null; 
 make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config run "{kind: replay, replay: {file: run.csv, speed: 1}}" "tick_Hz: 200"
-log run
-run "$work/daemon.log" "$BIN/digsightd" -c "$work/run.yaml"
-read_log run
+replay run
 
 # The log as it would be in the middle of the second dig: cut behind the 30th prediction of it.
 cut=$(grep -abo DIGSIGHT_PREDICTION "$work/run.lcm" | sed -n "$(($(grep ^prediction "$work/run.txt" | grep -n '1 actual 0\.[1-9]' |
