@@ -4,23 +4,12 @@
 #include "tests/blind/inject.h"
 #include "tests/blind/pool.h"
 #include "tests/blind/tally.h"
-#include "tests/testlib.h"
-
-#include "files/machine_yaml.h"
-#include "files/recording_csv.h"
+#include "tests/read.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #define MACHINE "config/machines/zx200_trench.yaml"
-
-static struct dig_machine machine(void)
-{
-    struct dig_machine m;
-    struct dig_error   error = { "" };
-    assert_ok(dig_machine_read(MACHINE, &m, &error), error);
-    return m;
-}
 
 TEST(draws_are_even_and_normal_and_repeat)
 {
@@ -51,7 +40,7 @@ TEST(draws_are_even_and_normal_and_repeat)
 
 TEST(pressures_undo_pushes)
 {
-    const struct dig_machine m = machine();
+    const struct dig_machine m = read_machine("zx200_trench");
     for (double push = -80e3; push <= 80e3; push += 7e3) {
         double head = 0.0;
         double rod  = 0.0;
@@ -83,7 +72,7 @@ static struct dig_machine_recording rest(const struct dig_machine *const m,
 // A mass at rest in the bucket: its weight times its horizontal distance, on every joint.
 TEST(a_heavy_bucket_needs_the_moment_of_its_weight)
 {
-    const struct dig_machine     m        = machine();
+    const struct dig_machine     m        = read_machine("zx200_trench");
     const double                 angle[3] = { 0.3, -1.2, -0.5 };
     struct dig_machine_recording r        = rest(&m, angle);
     struct blind_fault           f        = { BLIND_BUCKET_WEIGHT, { 100.0, 0.5, 0.5 } };
@@ -109,7 +98,7 @@ TEST(a_heavy_bucket_needs_the_moment_of_its_weight)
 
 TEST(a_payload_is_not_there_before_the_first_dig)
 {
-    const struct dig_machine m        = machine();
+    const struct dig_machine m        = read_machine("zx200_trench");
     const double             angle[3] = { 0.3, -1.2, -0.5 };
     struct blind_fault       f        = { BLIND_PAYLOAD, { 100.0, 0.5, 0.5, 0.5 } };
     for (size_t order = 0; order < 2; order++) {

@@ -5,11 +5,9 @@
 #define DIG_TESTS_CLOSED_LOOP_MACHINE_CAMPAIGN_H
 
 #include "closed_loop/machine/machine_side.h"
-#include "files/machine_yaml.h"
-#include "files/recording_csv.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 #include "tools/rig/motion/mechanism.h"
 #include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
@@ -30,22 +28,17 @@ static inline int build(void **state)
     const struct made_options options     = { .relative_sd = 0.1, .packings = 3 };
     struct dig_error          error       = { "" };
     set                                   = made_table(&options);
-    if (dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) != DIG_OK) {
-        return -1;
-    }
-    struct dig_rig_track_options how = dig_rig_track_options_default();
-    how.placed                       = true; // where digrig would put it: the search takes seconds
-    how.pin_X_m                      = 7.43;
-    how.pin_Z_m                      = -0.62;
+    machine                               = read_machine("zx200_trench");
+    struct dig_rig_track_options how      = dig_rig_track_options_default();
+    how.placed  = true; // where digrig would put it: the search takes seconds
+    how.pin_X_m = 7.43;
+    how.pin_Z_m = -0.62;
     for (int k = 0; k < KINDS; k++) {
-        char                 path[200];
-        struct dig_recording recording;
+        char path[200];
         (void)snprintf(path, sizeof path, "tests/data/reference/mu0.5_mur0.5_rho2500__%s.csv",
                        kind[k]);
-        if (dig_recording_read(path, &recording, &error) != DIG_OK ||
-            dig_rig_track_build(&machine, &how, 1, &recording, &track[k], &error) != DIG_OK) {
-            return -1;
-        }
+        struct dig_recording recording = read_recording(path);
+        assert_ok(dig_rig_track_build(&machine, &how, 1, &recording, &track[k], &error), error);
         dig_recording_finish(&recording);
     }
     return 0;

@@ -5,9 +5,8 @@
 
 #include "closed_loop/recordings/observe.h"
 #include "estimator/match/match.h"
-#include "files/recording_csv.h"
 #include "tables/load.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <glob.h>
 #include <stdio.h>
@@ -47,9 +46,8 @@ TEST(points_within_the_band_are_counted_where_something_was_measured)
 static struct dig_observation observed(const struct dig_curve_set *const set,
                                        const char *const                 path)
 {
-    struct dig_recording recording;
     struct dig_observed  seen;
-    assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
+    struct dig_recording recording = read_recording(path);
     assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
     dig_recording_finish(&recording);
     struct dig_observation o = { .trajectory = seen.trajectory, .last = 1.0, .forces = true };

@@ -2,9 +2,8 @@
 // machine_causes.c: the rig's machines by virtual work, broken in one way at a time.
 // DIG_TEST_ALL=1: every break of every machine. DIG_TEST_QUICK=1: every sixteenth.
 
-#include "files/recording_csv.h"
 #include "tests/broken_air.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 static struct machine {
     struct dig_machine   machine;
@@ -217,15 +216,13 @@ TEST(a_recording_with_a_dig_in_it_is_explained_by_nothing)
 {
     const struct machine *const  m   = &machines[5];
     struct dig_rig_track_options how = dig_rig_track_options_default();
-    struct dig_recording         dug;
-    struct machine               digs  = { .machine = m->machine };
-    struct dig_error             error = { "" };
-    how.placed                         = true;
-    how.pin_X_m                        = 7.43;
-    how.pin_Z_m                        = -0.62;
-    assert_ok(
-        dig_recording_read("tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv", &dug, &error),
-        error);
+    struct dig_recording         dug =
+        read_recording("tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv");
+    struct machine   digs  = { .machine = m->machine };
+    struct dig_error error = { "" };
+    how.placed             = true;
+    how.pin_X_m            = 7.43;
+    how.pin_Z_m            = -0.62;
     assert_ok(dig_rig_track_build(&m->machine, &how, 1, &dug, &digs.track, &error), error);
     struct dig_machine_recording r     = air_record(&m->machine, &digs.track, NULL, 1);
     struct dig_machine_air_check check = run(&m->machine, &r);

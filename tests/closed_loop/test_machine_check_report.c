@@ -4,9 +4,8 @@
 #include "closed_loop/report/machine_check_report.h"
 
 #include "core/units.h"
-#include "files/machine_yaml.h"
 #include "files/yaml/yaml_tree.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,11 +40,8 @@ static struct dig_check_item *add(const enum dig_check_question question, const 
 static int make(void **state)
 {
     (void)state;
-    struct dig_error error = { "" };
-    if (dig_machine_read("config/machines/zx200.yaml", &machine, &error) != DIG_OK) {
-        return -1;
-    }
-    check = (struct dig_machine_air_check){ .duration_s = 61.0, .verdict = DIG_CHECK_WRONG };
+    machine = read_machine("zx200");
+    check   = (struct dig_machine_air_check){ .duration_s = 61.0, .verdict = DIG_CHECK_WRONG };
     for (int q = 0; q < DIG_CHECK_QUESTIONS; q++) {
         add((enum dig_check_question)q, DIG_JOINT_BUCKET, DIG_CHECK_OK);
         add((enum dig_check_question)q, DIG_JOINT_BUCKET, DIG_CHECK_WRONG);

@@ -3,16 +3,15 @@
 #include "closed_loop/machine/machine_motion.h"
 
 #include "core/units.h"
-#include "files/machine_yaml.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 static struct dig_machine machine;
 
 static int read(void **state)
 {
     (void)state;
-    struct dig_error error = { "" };
-    return dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error);
+    machine = read_machine("zx200_trench");
+    return 0;
 }
 
 static const struct dig_correction nothing = { .delay_s = 0.0 };

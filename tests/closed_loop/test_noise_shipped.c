@@ -5,8 +5,8 @@
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/recordings/observe.h"
-#include "files/recording_csv.h"
 #include "tests/closed_loop/shipped_fixture.h"
+#include "tests/read.h"
 
 #include <glob.h>
 #include <math.h>
@@ -33,9 +33,8 @@ static void take(const char *const path, const struct dig_gravel *const gravel)
         g++;
     }
     assert_true(g < GRAVELS_MAX && ground[g].digs < DIGS_MAX);
-    struct dig_recording recording;
     struct dig_observed  seen;
-    assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
+    struct dig_recording recording = read_recording(path);
     assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
     dig_recording_finish(&recording);
     ground[g].gravel             = *gravel;

@@ -4,10 +4,8 @@
 #include "closed_loop/recordings/observe_machine.h"
 
 #include "closed_loop/recordings/observe.h"
-#include "files/machine_yaml.h"
-#include "files/recording_csv.h"
 #include "tests/made_table.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 #include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
 
@@ -33,25 +31,20 @@ static int build(void **state)
     struct dig_recording      recording[DIGS];
     struct dig_error          error = { "" };
     set                             = made_table(&options);
-    if (dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) != DIG_OK) {
-        return -1;
-    }
+    machine                         = read_machine("zx200_trench");
     for (int d = 0; d < DIGS; d++) {
-        if (dig_recording_read(file[d], &recording[d], &error) != DIG_OK ||
-            dig_observe_recording(set, &recording[d], &direct[d], &error) != DIG_OK) {
-            return -1;
-        }
+        recording[d] = read_recording(file[d]);
+        assert_ok(dig_observe_recording(set, &recording[d], &direct[d], &error), error);
     }
     struct dig_rig_track_options how = dig_rig_track_options_default();
     how.placed                       = true; // where digrig would put it: the search takes seconds
     how.pin_X_m                      = 7.43;
     how.pin_Z_m                      = -0.62;
-    const enum dig_status status =
-        dig_rig_track_build(&machine, &how, DIGS, recording, &track, &error);
+    assert_ok(dig_rig_track_build(&machine, &how, DIGS, recording, &track, &error), error);
     for (int d = 0; d < DIGS; d++) {
         dig_recording_finish(&recording[d]);
     }
-    return status == DIG_OK ? 0 : -1;
+    return 0;
 }
 
 static int tear_down(void **state)

@@ -1,8 +1,7 @@
 #include "closed_loop/recordings/reading_noise.h"
 
-#include "files/machine_yaml.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,12 +10,11 @@ enum { ROWS = 20000 };
 
 static struct dig_machine machine;
 
-static int read_machine(void **state)
+static int setup(void **state)
 {
-    struct dig_error error = { "" };
     (void)state;
-    return dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error) == DIG_OK ? 0
-                                                                                             : 1;
+    machine = read_machine("zx200_trench");
+    return 0;
 }
 
 // A machine that moves, read by sensors of these sigmas: the arm's pressures, and all angles.
@@ -90,4 +88,4 @@ TEST(readings_that_do_not_arrive_are_no_noise)
     dig_machine_recording_finish(&r);
 }
 
-TESTS_WITH(read_machine, NULL)
+TESTS_WITH(setup, NULL)

@@ -4,18 +4,10 @@
 #include "core/approach.h"
 
 #include "core/units.h"
-#include "files/scene_yaml.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <math.h>
 #include <string.h>
-
-static struct dig_scene rig(void)
-{
-    struct dig_scene scene;
-    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &scene, NULL), DIG_OK);
-    return scene;
-}
 
 struct tooth {
     double x_m, z_m;
@@ -41,7 +33,7 @@ static struct dig_trajectory make(const struct dig_scene *const scene, const cha
 
 TEST(the_plain_one_changes_no_bit)
 {
-    const struct dig_scene scene = rig();
+    const struct dig_scene scene = read_scene("config/scenes/rig.yaml");
     for (size_t t = 0; t < scene.trajectories; t++) {
         const struct dig_trajectory one  = make(&scene, scene.trajectory[t].name, 1.0, 0.0);
         const struct dig_trajectory zero = make(&scene, scene.trajectory[t].name, 0.0, 0.0);
@@ -52,7 +44,7 @@ TEST(the_plain_one_changes_no_bit)
 
 TEST(depth_is_how_far_the_tooth_goes_down)
 {
-    const struct dig_scene             scene   = rig();
+    const struct dig_scene             scene   = read_scene("config/scenes/rig.yaml");
     const struct dig_trajectory *const plain   = dig_scene_find(&scene, "actual");
     const double                       end_s   = plain->phase[0].duration_s;
     const double                       plain_m = scene.box.z_max_m - tooth_at(plain, end_s).z_m;
@@ -77,7 +69,7 @@ TEST(depth_is_how_far_the_tooth_goes_down)
 // The first phase of this one begins 40 mm above the ground and turns, too.
 TEST(depth_counts_from_the_ground_and_beside_turning)
 {
-    struct dig_scene             scene = rig();
+    struct dig_scene             scene = read_scene("config/scenes/rig.yaml");
     struct dig_trajectory *const t     = &scene.trajectory[0];
     t->start_z_m += 0.04;
     t->phase[0].vz_mps *= 2.5;
@@ -92,7 +84,7 @@ TEST(depth_counts_from_the_ground_and_beside_turning)
 
 TEST(attack_turns_the_bucket_about_its_tooth)
 {
-    const struct dig_scene             scene = rig();
+    const struct dig_scene             scene = read_scene("config/scenes/rig.yaml");
     const struct dig_trajectory *const plain = dig_scene_find(&scene, "simpleA");
     const struct dig_trajectory        dug   = make(&scene, "simpleA", 1.0, 5.0);
     for (double t_s = 0.0; t_s < 3.0;
@@ -120,7 +112,7 @@ static void refuse(const struct dig_scene *const scene, const struct dig_traject
 
 TEST(what_cannot_be_is_refused_by_name)
 {
-    struct dig_scene             scene = rig();
+    struct dig_scene             scene = read_scene("config/scenes/rig.yaml");
     struct dig_trajectory *const t     = &scene.trajectory[0];
     refuse(&scene, t, 0.1, 0.0, "trajectory simpleA: depth 0.1, expected 0.2 to 3");
     refuse(&scene, t, NAN, 0.0, "trajectory simpleA: depth nan");

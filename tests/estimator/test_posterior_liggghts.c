@@ -4,20 +4,18 @@
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"
 #include "estimator/match/posterior.h"
-#include "files/recording_csv.h"
 #include "tables/load.h"
 #include "tables/store.h"
 #include "tests/estimator/fitted_match.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <string.h>
 
 static struct dig_observation reference(const struct dig_curve_set *const set,
                                         const char *const path, const bool forces)
 {
-    struct dig_recording recording;
     struct dig_observed  seen;
-    assert_int_equal(dig_recording_read(path, &recording, NULL), DIG_OK);
+    struct dig_recording recording = read_recording(path);
     assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
     dig_recording_finish(&recording);
     struct dig_observation dig = { .trajectory = seen.trajectory, .last = 1.0, .forces = forces };

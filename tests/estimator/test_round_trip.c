@@ -4,10 +4,8 @@
 #include "estimator/estimator.h"
 
 #include "estimator/wrench/wrench.h"
-#include "files/machine_yaml.h"
-#include "files/recording_csv.h"
 #include "tests/made_table.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 #include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
 
@@ -19,14 +17,6 @@ static const char *const gravels[GRAVELS] = { "0.3", "0.5", "0.9" };
 static const char *const kinds[KINDS]     = { "simpleA", "actual", "simpleB" };
 static const char *const parts[PARTS]     = { "My", "Fx", "Fz" };
 
-static void read_machine(const char *const name, struct dig_machine *const machine)
-{
-    char             path[200];
-    struct dig_error error = { "" };
-    (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
-    assert_ok(dig_machine_read(path, machine, &error), error);
-}
-
 static void scale(struct dig_recording *const recording, const double share)
 {
     for (size_t i = 0; i < recording->rows; i++) {
@@ -37,14 +27,12 @@ static void scale(struct dig_recording *const recording, const double share)
 }
 
 // simpleB is no part of the reference digs: it was computed here (tests/data/round_trip).
-static void read_dig(const char *const gravel, const char *const kind,
-                     struct dig_recording *const recording)
+static struct dig_recording read_dig(const char *const gravel, const char *const kind)
 {
-    char             path[200];
-    struct dig_error error = { "" };
+    char path[200];
     (void)snprintf(path, sizeof path, "tests/data/%s/mu%s_mur%s_rho2500__%s.csv",
                    strcmp(kind, "simpleB") == 0 ? "round_trip" : "reference", gravel, gravel, kind);
-    assert_ok(dig_recording_read(path, recording, &error), error);
+    return read_recording(path);
 }
 
 static void build(const struct dig_machine *const           machine,
@@ -91,15 +79,14 @@ static struct dig_rig_track_options placed(const struct run *const run)
 static struct dig_rig_track one_dig(const struct run *const run, const char *const kind,
                                     struct dig_machine *const machine)
 {
-    struct dig_recording         recording;
     struct dig_rig_track         track;
     struct dig_rig_track_options options = placed(run);
     options.quasi_static                 = true;
     options.placed                       = true;
     options.pin_X_m                      = run->X_m;
     options.pin_Z_m                      = run->Z_m;
-    read_machine(run->machine, machine);
-    read_dig(run->gravel, kind, &recording);
+    *machine                             = read_machine(run->machine);
+    struct dig_recording recording       = read_dig(run->gravel, kind);
     scale(&recording, run->share);
     build(machine, &options, 1, &recording, &track);
     dig_recording_finish(&recording);
@@ -244,13 +231,12 @@ TEST(a_whole_run_gives_the_recorded_curves_within_their_sigma)
     const struct made_options   options = { .relative_sd = 0.1, .packings = 3 };
     struct dig_curve_set *const set     = made_table(&options);
     for (int g = 0; g < GRAVELS; g++) {
-        struct dig_machine                 machine;
+        const struct dig_machine           machine = read_machine("zx200_trench");
         struct dig_recording               recording[DIGS];
         const struct dig_rig_track_options at = placed(&runs[g]);
         struct dig_rig_track               track;
-        read_machine("zx200_trench", &machine);
         for (int d = 0; d < DIGS; d++) {
-            read_dig(gravels[g], kinds[d], &recording[d]);
+            recording[d] = read_dig(gravels[g], kinds[d]);
         }
         build(&machine, &at, DIGS, recording, &track);
         struct dig_rig_noise                noise     = dig_rig_noise_init(7);

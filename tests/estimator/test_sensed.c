@@ -3,25 +3,15 @@
 
 #include "estimator/wrench/sensed.h"
 
-#include "files/machine_yaml.h"
-#include "files/recording_csv.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 #include "tools/rig/motion/gauge.h"
 #include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static struct dig_machine shipped(void)
-{
-    struct dig_machine machine;
-    struct dig_error   error = { "" };
-    assert_ok(dig_machine_read("config/machines/rig_sensor.yaml", &machine, &error), error);
-    return machine;
-}
 
 static double between(uint64_t *const seed, const double low, const double high)
 {
@@ -36,7 +26,7 @@ static struct dig_vec2 turned(const double rad, const double x, const double y)
 // A sample that holds everything, at rest.
 static struct dig_sample resting(void)
 {
-    const struct dig_machine machine = shipped();
+    const struct dig_machine machine = read_machine("rig_sensor");
     const struct dig_rig_row row     = { .pose = { 0.3, 0.2, -1.4 }, .load = { 1.0, -2.0, 0.1 } };
     return dig_rig_sense(&machine, &row, 1, NULL);
 }
@@ -46,7 +36,7 @@ TEST(the_load_that_virtual_work_holds_is_found_again)
 {
     uint64_t seed = 5;
     for (int trial = 0; trial < 300; trial++) {
-        struct dig_machine machine = shipped();
+        struct dig_machine machine = read_machine("rig_sensor");
         machine.sensor.place_m =
             (struct dig_vec2){ between(&seed, -0.1, 0.1), between(&seed, -0.1, 0.1) };
         machine.sensor.turn_rad      = between(&seed, -3.0, 3.0);
@@ -106,11 +96,11 @@ static struct run start(const bool quasi_static)
         "tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv"
     };
     struct dig_error             error   = { "" };
-    struct run                   run     = { .machine = shipped() };
+    struct run                   run     = { .machine = read_machine("rig_sensor") };
     struct dig_rig_track_options options = dig_rig_track_options_default();
     options.quasi_static                 = quasi_static;
     for (int d = 0; d < DIGS; d++) {
-        assert_int_equal(dig_recording_read(files[d], &run.recording[d], &error), DIG_OK);
+        run.recording[d] = read_recording(files[d]);
     }
     assert_ok(dig_rig_track_build(&run.machine, &options, DIGS, run.recording, &run.track, &error),
               error);
@@ -198,7 +188,7 @@ TEST(one_sigma_covers_two_thirds_of_each_part)
 TEST(what_does_not_average_down_is_the_rounding_that_stands)
 {
     const struct dig_sensed_motion still   = { .turn_radps = 0.0 };
-    struct dig_machine             machine = shipped();
+    struct dig_machine             machine = read_machine("rig_sensor");
     const struct dig_sample        sample  = resting();
     struct dig_wrench              dithered, bare;
     struct dig_front               front;
@@ -212,7 +202,7 @@ TEST(what_does_not_average_down_is_the_rounding_that_stands)
 
 TEST(beyond_its_range_the_sensor_says_nothing)
 {
-    const struct dig_machine       machine = shipped();
+    const struct dig_machine       machine = read_machine("rig_sensor");
     const struct dig_sensed_motion still   = { .turn_radps = 0.0 };
     const struct {
         enum dig_signal signal;
@@ -238,7 +228,7 @@ TEST(beyond_its_range_the_sensor_says_nothing)
 
 TEST(a_sample_that_lacks_anything_is_refused_untouched)
 {
-    const struct dig_machine       machine = shipped();
+    const struct dig_machine       machine = read_machine("rig_sensor");
     const struct dig_sensed_motion still   = { .turn_radps = 0.0 };
     struct dig_wrench              w;
     struct dig_front               front;

@@ -6,9 +6,8 @@
 
 #include "estimator/wrench/sensed.h"
 #include "estimator/wrench/wrench.h"
-#include "files/machine_yaml.h"
 #include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 #include "tools/rig/sensors.h"
 
 enum { PARTS = 3, DRAWS = 1500 };
@@ -99,9 +98,7 @@ TEST(machines_with_other_masses_and_centres_spread_by_sigma)
 
 TEST(rigs_with_other_buckets_and_places_spread_by_sigma)
 {
-    struct dig_machine file;
-    struct dig_error   error = { "" };
-    assert_ok(dig_machine_read("config/machines/rig_sensor.yaml", &file, &error), error);
+    struct dig_machine file = read_machine("rig_sensor");
     file.tolerance = (struct dig_tolerance){ .pin_m = 3e-4, .mass_share = 0.03, .com_share = 0.03 };
     const struct dig_rig_pose      pose        = { 0.3, 0.2, -1.4 };
     const struct dig_rig_motion    still       = { .turn_radps2 = { 0.0 } };

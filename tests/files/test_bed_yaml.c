@@ -9,7 +9,7 @@
 
 TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    const struct dig_scene           s   = yaml_scene(EXAMPLE);
+    const struct dig_scene           s   = read_scene(EXAMPLE);
     const struct dig_bed_plan *const bed = &s.bed;
     assert_int_equal(s.laws.normal, DIG_NORMAL_HERTZ);
     assert_int_equal(s.laws.rolling, DIG_ROLLING_CDT);
@@ -54,7 +54,7 @@ TEST(the_example_of_the_formats_loads_as_it_is_written)
 TEST(a_plain_scene_keeps_its_identity)
 {
     char                   hex[65];
-    const struct dig_scene rig = yaml_scene("config/scenes/rig.yaml");
+    const struct dig_scene rig = read_scene("config/scenes/rig.yaml");
     dig_scene_hash(&rig, hex);
     assert_string_equal(hex, "9a66b75d3dbf255ea79c13c1c43a401f089ead1b9d22f68b09cfd554af26f411");
 }
@@ -163,7 +163,7 @@ TEST(a_log_normal_bed_is_cut_into_classes_of_equal_mass)
 
 TEST(the_ground_is_straight_between_its_points)
 {
-    struct dig_scene s = yaml_scene(EXAMPLE);
+    struct dig_scene s = read_scene(EXAMPLE);
     assert_close(dig_scene_ground_m(&s, 0.25, 0.0), 0.29, 1e-15);
     assert_close(dig_scene_ground_m(&s, -1.0, 0.0), 0.28, 1e-15);
     assert_close(dig_scene_ground_m(&s, 2.0, 0.0), 0.29, 1e-15);
@@ -181,7 +181,7 @@ TEST(the_ground_is_straight_between_its_points)
 // Two profiles, heights by hand.
 TEST(the_ground_is_straight_from_profile_to_profile)
 {
-    struct dig_scene s = yaml_scene(UNEVEN);
+    struct dig_scene s = read_scene(UNEVEN);
     assert_int_equal(s.bed.profiles, 2);
     assert_close(dig_scene_ground_m(&s, 0.5, -0.2), 0.29, 1e-15);
     assert_close(dig_scene_ground_m(&s, 0.5, 0.2), 0.30, 1e-15);
@@ -211,7 +211,7 @@ TEST(every_key_of_profiles_is_checked)
 
 TEST(every_height_is_of_the_scenes_identity)
 {
-    struct dig_scene s = yaml_scene(UNEVEN);
+    struct dig_scene s = read_scene(UNEVEN);
     char             hex[65];
     char             other[65];
     dig_scene_hash(&s, hex);

@@ -1,17 +1,8 @@
 // The paper's models as scenes: config/scenes/paper_*.yaml against its Tables III, IV and VIII.
 
-#include "files/scene_yaml.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <stdio.h>
-
-static struct dig_scene read_scene(const char *const path)
-{
-    struct dig_scene scene;
-    struct dig_error error = { "" };
-    assert_ok(dig_scene_read(path, &scene, &error), error);
-    return scene;
-}
 
 static void check_material(const struct dig_scene *const scene, const double diameter_m,
                            const double young_Pa, const double poisson, const double restitution)

@@ -7,7 +7,7 @@
 // toe_x0_m, the second is the last line of curves/mu0.3_mur0.3_rho2500__actual.csv there.
 TEST(the_rig_is_the_scene_of_the_reference_digs)
 {
-    const struct dig_scene             rig     = yaml_scene("config/scenes/rig.yaml");
+    const struct dig_scene             rig     = read_scene("config/scenes/rig.yaml");
     const struct dig_trajectory *const actual  = dig_scene_find(&rig, "actual");
     const struct dig_trajectory *const simpleA = dig_scene_find(&rig, "simpleA");
     const struct dig_trajectory *const simpleB = dig_scene_find(&rig, "simpleB");
@@ -36,7 +36,7 @@ TEST(the_rig_is_the_scene_of_the_reference_digs)
 
 static void loads(const char *const path)
 {
-    (void)yaml_scene(path);
+    (void)read_scene(path);
 }
 
 TEST(every_scene_that_is_shipped_loads)
@@ -46,7 +46,7 @@ TEST(every_scene_that_is_shipped_loads)
 
 TEST(the_example_of_the_formats_loads_as_it_is_written)
 {
-    const struct dig_scene s = yaml_scene("tests/data/formats/scene.yaml");
+    const struct dig_scene s = read_scene("tests/data/formats/scene.yaml");
     assert_string_equal(s.name, "tub");
     assert_int_equal(s.bucket.points, 4);
     assert_close(s.bucket.x_m[2], -0.12, 0.0);

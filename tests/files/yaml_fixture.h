@@ -4,7 +4,7 @@
 #ifndef DIG_TESTS_YAML_FIXTURE_H
 #define DIG_TESTS_YAML_FIXTURE_H
 
-#include "files/scene_yaml.h"
+#include "tests/read.h"
 #include "tests/scratch.h"
 
 #include <ctype.h>
@@ -80,17 +80,9 @@ static inline void yaml_loads_all(const char *const folder, void (*const load)(c
     assert_true(files > 0);
 }
 
-static inline struct dig_scene yaml_scene(const char *const path)
-{
-    struct dig_error error = { "" };
-    struct dig_scene scene;
-    assert_ok(dig_scene_read(path, &scene, &error), error);
-    return scene;
-}
-
 static inline void yaml_scene_hash(const char *const text, char hex[const 65])
 {
-    const struct dig_scene scene = yaml_scene(scratch_write("scene.yaml", text));
+    const struct dig_scene scene = read_scene(scratch_write("scene.yaml", text));
     dig_scene_hash(&scene, hex);
 }
 

@@ -1,7 +1,6 @@
 #include "tests/offline_dem/phase_means.h"
 
-#include "files/recording_csv.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <unistd.h>
 
@@ -67,12 +66,10 @@ void phase_means_add_recording(struct phase_means *const          means,
 bool phase_means_add_file(struct phase_means *const          means,
                           const struct dig_trajectory *const trajectory, const char *const path)
 {
-    struct dig_recording r     = { 0 };
-    struct dig_error     error = { "" };
     if (access(path, R_OK) != 0) {
         return false;
     }
-    assert_ok(dig_recording_read(path, &r, &error), error);
+    struct dig_recording r = read_recording(path);
     phase_means_add_recording(means, trajectory, &r);
     dig_recording_finish(&r);
     return true;

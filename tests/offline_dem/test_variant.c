@@ -2,22 +2,14 @@
 
 #include "core/ground.h"
 #include "core/units.h"
-#include "files/scene_yaml.h"
 #include "offline_dem/dig/variant.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <string.h>
 
-static struct dig_scene rig(void)
-{
-    struct dig_scene scene;
-    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &scene, NULL), DIG_OK);
-    return scene;
-}
-
 static struct dig_scene make(const enum dig_effect_id effect, const double magnitude)
 {
-    const struct dig_scene plain = rig();
+    const struct dig_scene plain = read_scene("config/scenes/rig.yaml");
     struct dig_scene       varied;
     struct dig_error       error = { "" };
     assert_ok(dig_variant_make(&plain, effect, magnitude, &varied, &error), error);
@@ -27,7 +19,7 @@ static struct dig_scene make(const enum dig_effect_id effect, const double magni
 
 TEST(every_effect_of_a_bed_makes_another_scene)
 {
-    const struct dig_scene plain = rig();
+    const struct dig_scene plain = read_scene("config/scenes/rig.yaml");
     char                   before[65];
     dig_scene_hash(&plain, before);
     static const struct {
@@ -136,7 +128,7 @@ TEST(a_clump_is_as_long_as_it_says)
 
 TEST(what_no_bed_can_hold_is_refused_by_name)
 {
-    const struct dig_scene plain = rig();
+    const struct dig_scene plain = read_scene("config/scenes/rig.yaml");
     static const struct {
         enum dig_effect_id effect;
         double             magnitude;

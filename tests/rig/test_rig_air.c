@@ -3,8 +3,7 @@
 #include "tools/rig/motion/air.h"
 
 #include "core/units.h"
-#include "files/machine_yaml.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 #include "tools/rig/motion/track.h"
 
 #include <stdio.h>
@@ -13,16 +12,6 @@
 static const char *const shipped[] = { "mini_1t8", "mini_2t8",     "zx120",      "crawler_14t",
                                        "zx200",    "zx200_trench", "crawler_36t" };
 #define SHIPPED (sizeof shipped / sizeof shipped[0])
-
-static struct dig_machine read_machine(const char *const name)
-{
-    char               path[200];
-    struct dig_machine machine;
-    struct dig_error   error = { "" };
-    (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
-    assert_ok(dig_machine_read(path, &machine, &error), error);
-    return machine;
-}
 
 static struct dig_rig_track move(const struct dig_machine *const machine)
 {

@@ -3,28 +3,16 @@
 #include "tools/rig/motion/mechanism.h"
 
 #include "core/units.h"
-#include "files/machine_yaml.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <complex.h>
 
 #define J CMPLX(0.0, 1.0) // I of <complex.h> is a float
 
 static const char *const shipped[] = {
-    "config/machines/zx200.yaml",       "config/machines/zx200_trench.yaml",
-    "config/machines/zx120.yaml",       "config/machines/mini_2t8.yaml",
-    "config/machines/mini_1t8.yaml",    "config/machines/crawler_14t.yaml",
-    "config/machines/crawler_36t.yaml",
+    "zx200", "zx200_trench", "zx120", "mini_2t8", "mini_1t8", "crawler_14t", "crawler_36t",
 };
 #define SHIPPED (sizeof shipped / sizeof shipped[0])
-
-static struct dig_machine read_machine(const char *const path)
-{
-    struct dig_machine machine;
-    struct dig_error   error = { "" };
-    assert_ok(dig_machine_read(path, &machine, &error), error);
-    return machine;
-}
 
 // Boom 4 m and arm 3 m at right angles reach 5 m: the pin at (5, 0), everything known by hand.
 static struct dig_machine right_angle(void)

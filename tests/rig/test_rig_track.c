@@ -3,33 +3,13 @@
 #include "tools/rig/motion/track.h"
 
 #include "core/units.h"
-#include "files/machine_yaml.h"
-#include "files/recording_csv.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <string.h>
 
 #define SIMPLE "tests/data/reference/mu0.5_mur0.5_rho2500__simpleA.csv"
 #define ACTUAL "tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv"
 #define STIFF  "tests/data/reference/mu0.9_mur0.9_rho2500__actual.csv"
-
-static struct dig_machine read_machine(const char *const name)
-{
-    char path[200];
-    (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
-    struct dig_machine machine;
-    struct dig_error   error = { "" };
-    assert_ok(dig_machine_read(path, &machine, &error), error);
-    return machine;
-}
-
-static struct dig_recording read_recording(const char *const path)
-{
-    struct dig_recording recording;
-    struct dig_error     error = { "" };
-    assert_ok(dig_recording_read(path, &recording, &error), error);
-    return recording;
-}
 
 TEST(simple_then_actual_fit_the_trench_machine_below_relief)
 {

@@ -3,20 +3,11 @@
 #include "tools/rig/motion/work.h"
 
 #include "core/units.h"
-#include "files/machine_yaml.h"
-#include "tests/testlib.h"
+#include "tests/read.h"
 
 #include <complex.h>
 
 #define J CMPLX(0.0, 1.0) // I of <complex.h> is a float
-
-static struct dig_machine read_machine(void)
-{
-    struct dig_machine machine;
-    struct dig_error   error = { "" };
-    assert_ok(dig_machine_read("config/machines/zx200_trench.yaml", &machine, &error), error);
-    return machine;
-}
 
 static double complex of(const struct dig_vec2 v)
 {
@@ -87,7 +78,7 @@ static void free_body(const struct dig_machine *const m, const double q[3],
 
 TEST(pushes_are_those_of_free_body_statics)
 {
-    const struct dig_machine machine    = read_machine();
+    const struct dig_machine machine    = read_machine("zx200_trench");
     const double             poses[][3] = {
                     { 0.2, -1.0, -0.5 },
                     { 0.5, -2.2, -1.8 },
@@ -120,7 +111,7 @@ TEST(pushes_are_those_of_free_body_statics)
 // In a lift that accelerates upwards with g everything weighs twice, and nothing else changes.
 TEST(acceleration_upwards_by_g_doubles_the_weight)
 {
-    const struct dig_machine    machine = read_machine();
+    const struct dig_machine    machine = read_machine("zx200_trench");
     const struct dig_rig_joints joints  = { .rad = { 0.3, -1.2, -0.6 } };
     const struct dig_rig_wrench none    = { 0.0, 0.0, 0.0 };
     const struct dig_rig_motion still   = { .turn_radps2 = { 0.0 } };
@@ -138,7 +129,7 @@ TEST(acceleration_upwards_by_g_doubles_the_weight)
 // A bucket spun up about its own centre of mass costs inertia times angular acceleration.
 TEST(turning_the_bucket_faster_costs_its_inertia)
 {
-    const struct dig_machine    machine = read_machine();
+    const struct dig_machine    machine = read_machine("zx200_trench");
     const struct dig_rig_joints joints  = { .rad = { 0.3, -1.2, -0.6 } };
     const struct dig_rig_wrench none    = { 0.0, 0.0, 0.0 };
     const struct dig_rig_wrench moment  = { 0.0, 0.0, -machine.link[2].inertia_kgm2 * 3.0 };
@@ -155,7 +146,7 @@ TEST(turning_the_bucket_faster_costs_its_inertia)
 
 TEST(pressures_push_the_piston_with_the_force_asked_for)
 {
-    const struct dig_machine machine = read_machine();
+    const struct dig_machine machine = read_machine("zx200_trench");
     for (double push_N = -4e5; push_N <= 4e5; push_N += 1e4) {
         const struct dig_rig_pushes pushes = { .N = { push_N, push_N, push_N } };
         struct dig_rig_pressures    found;
@@ -175,7 +166,7 @@ TEST(pressures_push_the_piston_with_the_force_asked_for)
 
 TEST(pressures_do_not_jump_where_push_turns_to_pull)
 {
-    const struct dig_machine         machine = read_machine();
+    const struct dig_machine         machine = read_machine("zx200_trench");
     const struct dig_cylinder *const c       = &machine.cylinder[DIG_JOINT_BOOM];
     const double             switch_N = c->count * c->back_Pa * DIG_PI / 4.0 * c->rod_m * c->rod_m;
     struct dig_rig_pressures before;
@@ -191,7 +182,7 @@ TEST(pressures_do_not_jump_where_push_turns_to_pull)
 
 TEST(cylinder_without_leverage_is_refused_and_writes_nothing)
 {
-    struct dig_machine          machine = read_machine();
+    struct dig_machine          machine = read_machine("zx200_trench");
     const struct dig_rig_joints joints  = { .rad = { 0.3, -1.2, -0.6 } };
     const struct dig_rig_wrench none    = { 0.0, 0.0, 0.0 };
     const struct dig_rig_motion still   = { .turn_radps2 = { 0.0 } };
