@@ -43,6 +43,20 @@ is() { # VALUE WANTED
     [ "$1" = "$2" ] || { echo "      \"$1\" instead of \"$2\""; return 1; }
 }
 
+# Exit status 2, a message that holds every word, and no output file.
+refuses() { # WORDS… -- COMMAND…
+    local words=() word
+    while [ "$1" != -- ]; do words+=("$1"); shift; done
+    shift
+    "$@" >"$work/out" 2>"$work/err"
+    local rc=$?
+    [ "$rc" = 2 ] || { echo "      exit status $rc of: $*"; return 1; }
+    for word in "${words[@]}"; do
+        grep -qF -- "$word" "$work/err" || { echo "      no \"$word\" in: $(cat "$work/err")"; return 1; }
+    done
+    [ ! -e "$work/never" ]
+}
+
 is_json() { # standard input: one JSON value and nothing else
     cat >"$work/json" && is "$(sqlite3 :memory: "SELECT json_valid(CAST(readfile('$work/json') AS TEXT))")" 1
 }

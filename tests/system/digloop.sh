@@ -4,20 +4,6 @@
 table=${TABLE:-tables/reference_rig.sqlite}
 reference=tests/data/reference/mu0.5_mur0.5_rho2500
 
-# Exit status 2, a message that holds every word, and no output file.
-refuses() { # WORDS… -- COMMAND…
-    local words=() word
-    while [ "$1" != -- ]; do words+=("$1"); shift; done
-    shift
-    "$@" >"$work/out" 2>"$work/err"
-    local rc=$?
-    [ "$rc" = 2 ] || { echo "      exit status $rc of: $*"; return 1; }
-    for word in "${words[@]}"; do
-        grep -qF -- "$word" "$work/err" || { echo "      no \"$word\" in: $(cat "$work/err")"; return 1; }
-    done
-    [ ! -e "$work/never" ]
-}
-
 "$BIN/digloop" identify "$table" "$reference"__simpleA.csv "$reference"_seed{2,3,4,5}__simpleA.csv --json \
     >"$work/id.json" 2>"$work/err"
 check "digs of LIGGGHTS are identified" [ $? = 0 ]

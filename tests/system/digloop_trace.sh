@@ -4,18 +4,7 @@
 table=${TABLE:-tables/reference_rig.sqlite}
 reference=$PWD/tests/data/reference/mu0.5_mur0.5_rho2500
 
-# Exit status 2 and a message that holds every word.
-refuses() { # WORDS… -- FOLDER
-    local words=() word
-    while [ "$1" != -- ]; do words+=("$1"); shift; done
-    "$BIN/digloop" trace "$table" "$2" --json "$work/never" >"$work/out" 2>"$work/err"
-    local rc=$?
-    [ "$rc" = 2 ] || { echo "      exit status $rc"; return 1; }
-    for word in "${words[@]}"; do
-        grep -qF -- "$word" "$work/err" || { echo "      no \"$word\" in: $(cat "$work/err")"; return 1; }
-    done
-    [ ! -e "$work/never" ]
-}
+traced() { "$BIN/digloop" trace "$table" "$1" --json "$work/never"; } # FOLDER
 
 campaign() { # FOLDER SCENE, then FILE TRAJECTORY ROLE…
     mkdir -p "$work/$1"
@@ -89,7 +78,7 @@ friction() { tr -d ' \n' <"$1" | sed -nE 's/.*"friction":\{"value":([-0-9.e+]+).
 check "lost samples hardly change the gravel" within "$(friction "$work/lossy.json")" \
     "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f - .01 }')" "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f + .01 }')"
 awk -F, -v OFS=, 'NR > 99 && NR < 140 { $9 = "" } 1' "$A$R" >"$work/lossy/lossy_b.csv"
-check "of a moment lost for longer nothing is made up" refuses "lossy/lossy_b.csv: My_Nm is missing for longer than 0.16 s" -- "$work/lossy"
+check "of a moment lost for longer nothing is made up" refuses "lossy/lossy_b.csv: My_Nm is missing for longer than 0.16 s" -- traced "$work/lossy"
 
 # The rig at another size: the scene, and digs as they would be recorded there (Froude similarity).
 scaled_scene() { # LAMBDA
@@ -133,7 +122,7 @@ for lambda in 2 4; do
         eval '[ -n "$(tell "$work/n.json")" ] && [ "$(tell "$work/times$lambda.json")" = "$(tell "$work/n.json")" ]'
 done
 cp "$A$S" "$work/times2/a.csv"
-check "a dig of one size in a scene of another is refused" refuses "times2/a.csv: the recording's path is none of the table's" -- "$work/times2"
+check "a dig of one size in a scene of another is refused" refuses "times2/a.csv: the recording's path is none of the table's" -- traced "$work/times2"
 
 # A scene file that is the rig's with one thing changed, or another that ships.
 scene_is() { # NAME SED-SCRIPT
@@ -142,7 +131,7 @@ scene_is() { # NAME SED-SCRIPT
 }
 other_scene() { # NAME KEY: refused, both scenes and the table named, and what of them differs
     check "another scene is refused: $1" \
-        refuses "$1.yaml: scene \"" "is not similar to \"rig\" of $table: $2" "expected" -- "$work/$1"
+        refuses "$1.yaml: scene \"" "is not similar to \"rig\" of $table: $2" "expected" -- traced "$work/$1"
 }
 scene_is product ""
 cp config/scenes/product.yaml "$work/product.yaml"
@@ -162,14 +151,14 @@ other_scene elsewhere 'trajectory "actual"'
 sed 's/bucket_width_m: .*/bucket_width_m: 1.0/' config/machines/zx200_trench.yaml >"$work/wide.yaml"
 campaign wide rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
 echo "machine: ../wide.yaml" >>"$work/wide/campaign.yaml"
-check "a machine whose bucket is of another shape is refused" refuses "wide.yaml: a bucket" "scene \"rig\" in $table" -- "$work/wide"
+check "a machine whose bucket is of another shape is refused" refuses "wide.yaml: a bucket" "scene \"rig\" in $table" -- traced "$work/wide"
 
 campaign mixed rig "$A$S" simpleA identify "$A$R" actual fit "$PWD/tests/data/formats/machine_recording.csv" actual fit
 check "recordings of a rig and of a machine are not mixed" \
-    refuses "machine_recording.csv: a machine recording, but mu0.5_mur0.5_rho2500__simpleA.csv is a force recording" -- "$work/mixed"
+    refuses "machine_recording.csv: a machine recording, but mu0.5_mur0.5_rho2500__simpleA.csv is a force recording" -- traced "$work/mixed"
 campaign colour rig colour.csv simpleA identify "$A$R" actual fit
 sed 's/^t_s/colour,t_s/; 2,$s/^/0,/' "$A$S" >"$work/colour/colour.csv"
-check "a column that nobody knows is named" refuses 'colour/colour.csv:1: column "colour": unknown' -- "$work/colour"
+check "a column that nobody knows is named" refuses 'colour/colour.csv:1: column "colour": unknown' -- traced "$work/colour"
 # A machine's recordings, and the same with a pressure cut off at half of its peak, as a sensor too small would.
 machine=$PWD/config/machines/zx200_trench.yaml
 clip() { # COLUMN FILE
@@ -188,28 +177,28 @@ mkdir "$work/clipped" && cp "$work/whole/"* "$work/clipped"
 for chamber in arm_head_Pa bucket_head_Pa; do
     clip $chamber "$work/whole/b.csv" >"$work/clipped/b.csv"
     check "a pressure that was cut off is named: $chamber" \
-        refuses "clipped/b.csv: $chamber stays at its highest value" "clipped, expected" -- "$work/clipped"
+        refuses "clipped/b.csv: $chamber stays at its highest value" "clipped, expected" -- traced "$work/clipped"
 done
 
 campaign one rig "$A$S" simpleA identify
-check "one dig is too few" refuses "expected two or more" -- "$work/one"
+check "one dig is too few" refuses "expected two or more" -- traced "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit
-check "another scene is refused" refuses "another" "rig" -- "$work/other"
+check "another scene is refused" refuses "another" "rig" -- traced "$work/other"
 campaign swapped rig "$A$S" actual identify "$A$R" actual fit
-check "a dig along another trajectory is named" refuses "mu0.5_mur0.5_rho2500__simpleA.csv" "campaign.yaml says actual" -- "$work/swapped"
+check "a dig along another trajectory is named" refuses "mu0.5_mur0.5_rho2500__simpleA.csv" "campaign.yaml says actual" -- traced "$work/swapped"
 campaign nowhere rig "$A$S" sideways identify "$A$R" actual fit
-check "a trajectory that the table lacks is named" refuses "sideways" -- "$work/nowhere"
+check "a trajectory that the table lacks is named" refuses "sideways" -- traced "$work/nowhere"
 campaign gone rig none.csv simpleA identify "$A$R" actual fit
-check "a missing recording is named" refuses "gone/none.csv: No such file" -- "$work/gone"
+check "a missing recording is named" refuses "gone/none.csv: No such file" -- traced "$work/gone"
 sed -i 1d "$work/gone/campaign.yaml"
 echo "scene: none.yaml" >>"$work/gone/campaign.yaml"
-check "so is a missing scene" refuses "gone/none.yaml: no such scene file" -- "$work/gone"
+check "so is a missing scene" refuses "gone/none.yaml: no such scene file" -- traced "$work/gone"
 campaign machine rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
-check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- "$work/machine"
+check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- traced "$work/machine"
 sed 's/^scene/machine: none.yaml\n&/' "$work/machine/campaign.yaml" >"$work/m" && mv "$work/m" "$work/machine/campaign.yaml"
-check "a machine that is not there is named" refuses "machine/none.yaml: No such file" -- "$work/machine"
-check "a folder without a campaign is named" refuses "$work/campaign.yaml: No such file" -- "$work"
-check "so is a folder that is not there" refuses "nothing/campaign.yaml: No such file" -- "$work/nothing"
+check "a machine that is not there is named" refuses "machine/none.yaml: No such file" -- traced "$work/machine"
+check "a folder without a campaign is named" refuses "$work/campaign.yaml: No such file" -- traced "$work"
+check "so is a folder that is not there" refuses "nothing/campaign.yaml: No such file" -- traced "$work/nothing"
 "$BIN/digloop" trace "$table" "$work/plain" --effects "$work/none.sqlite" >/dev/null 2>"$work/err"
 check "and a table of effects" eval '[ $? = 2 ] && grep -q "none.sqlite: No such file" "$work/err"'
 
