@@ -87,7 +87,9 @@ enum dig_status dig_sql_refuse(sqlite3 *const db, const char *const path,
         return dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
                              sqlite3_errmsg(db));
     }
-    if (code == SQLITE_CANTOPEN) {
+    const int extended = sqlite3_extended_errcode(db);
+    if (code == SQLITE_CANTOPEN || extended == SQLITE_IOERR_SHMOPEN ||
+        extended == SQLITE_IOERR_SHMSIZE || extended == SQLITE_IOERR_SHMMAP) {
         return dig_error_set(error, DIG_EIO,
                              "%s: it, or a journal beside it, cannot be opened, expected regular "
                              "files and a journal of this table alone",

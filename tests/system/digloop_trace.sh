@@ -185,9 +185,9 @@ check "one dig is too few" refuses "expected two or more" -- traced "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit
 check "another scene is refused" refuses "another" "rig" -- traced "$work/other"
 campaign swapped rig "$A$S" actual identify "$A$R" actual fit
-check "a dig along another trajectory is named" refuses "mu0.5_mur0.5_rho2500__simpleA.csv" "campaign.yaml says actual" -- traced "$work/swapped"
+check "a dig along another trajectory is named" refuses "swapped/campaign.yaml:3: recordings[0].trajectory: \"actual\", expected simpleA, along which" "mu0.5_mur0.5_rho2500__simpleA.csv is dug" -- traced "$work/swapped"
 campaign nowhere rig "$A$S" sideways identify "$A$R" actual fit
-check "a trajectory that the table lacks is named" refuses "sideways" -- traced "$work/nowhere"
+check "a trajectory that the table lacks is named" refuses "nowhere/campaign.yaml:3: recordings[0].trajectory: \"sideways\", expected one of the table's: simpleA, simpleB, actual" -- traced "$work/nowhere"
 campaign gone rig none.csv simpleA identify "$A$R" actual fit
 check "a missing recording is named" refuses "gone/none.csv: No such file" -- traced "$work/gone"
 sed -i 1d "$work/gone/campaign.yaml"

@@ -121,7 +121,7 @@ refused "such a rock, and a kept bed" 'bed.obstacles.0..movable: a bed file does
 cp tables/reference_rig.sqlite "$work/many.sqlite"
 sqlite3 "$work/many.sqlite" "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 30000)
     INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad) SELECT 0.001 + i * 1e-6, 0.3, 2400, '', 0, 1, 0 FROM n"
-timeout 60 "$BIN/digtable" check "$work/many.sqlite" >"$work/out" 2>"$work/err"
+timeout -s KILL 60 "$BIN/digtable" check "$work/many.sqlite" >"$work/out" 2>"$work/err"
 check "a table of 30,000 empty grounds is checked within a minute" eval 'is $? 0 && grep -q "sound; 30048 points, 144 entries" $work/out'
 printf 'friction: [0.3]\nrolling: [0.1]\ndensity_kgpm3: [2500]\npackings: 2\n' >"$work/small.yaml"
 digtable generate $scene "$work/small.yaml" -o "$work/good.sqlite"

@@ -325,6 +325,16 @@ TEST_WITH(what_stands_beside_a_table_is_not_waited_for_and_no_link_is_followed, 
             (void)unlink(scratch_path(beside[i]));
         }
     }
+
+    // This one SQLite opens itself.
+    struct dig_curve_set *set   = NULL;
+    struct dig_error      error = { "" };
+    (void)unlink(scratch_path("good.sqlite-shm"));
+    assert_int_equal(mkfifo(scratch_path("good.sqlite-shm"), 0600), 0);
+    (void)alarm(20);
+    assert_int_equal(dig_table_load(scratch_path("good.sqlite"), &set, &error), DIG_EIO);
+    (void)alarm(0);
+    assert_contains(error.text, "good.sqlite: it, or a journal beside it, cannot be opened");
 }
 
 TEST_WITH(no_table_is_made_through_a_link, scratch_setup, scratch_teardown)

@@ -2,9 +2,11 @@
 
 #include "closed_loop/recordings/observe.h"
 #include "core/name.h"
+#include "core/text.h"
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
+#include "files/yaml/yaml.h"
 #include "tools/digloop/commands.h"
 #include "tools/digloop/recording.h"
 #include "tools/digloop/scene.h"
@@ -16,10 +18,17 @@
 #include <string.h>
 #include <unistd.h>
 
-static enum dig_status fill_heads(const struct dig_campaign *const  from,
-                                  const struct dig_curve_set *const set,
+static const char *yaml_of(const struct digloop_job *const job, char path[const DIG_CAMPAIGN_PATH])
+{
+    (void)snprintf(path, DIG_CAMPAIGN_PATH, "%s/campaign.yaml", job->options->recording[0]);
+    return path;
+}
+
+static enum dig_status fill_heads(const struct digloop_job *const  job,
+                                  const struct dig_campaign *const from,
                                   struct dig_measured measured[], struct dig_error *const error)
 {
+    const struct dig_curve_set *const set = job->set;
     for (size_t i = 0; i < from->recordings; i++) {
         const struct dig_campaign_recording *const r = &from->recording[i];
         (void)snprintf(measured[i].name, sizeof measured[i].name, "%.63s", dig_path_last(r->file));
@@ -28,8 +37,16 @@ static enum dig_status fill_heads(const struct dig_campaign *const  from,
         measured[i].use        = (enum dig_use)r->role;
         measured[i].pass       = r->pass;
         if (measured[i].trajectory < 0) {
-            return dig_error_set(error, DIG_EINVAL, "%s: the table has no trajectory \"%s\"",
-                                 r->file, r->trajectory);
+            char yaml[DIG_CAMPAIGN_PATH];
+            char known[256] = "";
+            for (size_t t = 0; t < set->trajectories; t++) {
+                dig_text_add(sizeof known, known, "%s%s", t > 0 ? ", " : "",
+                             set->trajectory[t].name);
+            }
+            return dig_yaml_refuse(yaml_of(job, yaml), error,
+                                   "recordings[%zu].trajectory: \"%s\", expected one of the "
+                                   "table's: %s",
+                                   i, r->trajectory, known);
         }
     }
     return DIG_OK;
@@ -69,14 +86,17 @@ static void tell_depth(const struct dig_curve_set *const set,
     }
 }
 
-static enum dig_status measure_force(const struct dig_campaign_recording *const r,
-                                     const struct dig_curve_set *const set, const double scale,
-                                     struct dig_measured *const m, struct dig_error *const error)
+// The campaign's recording i.
+static enum dig_status measure_force(const struct digloop_job *const            job,
+                                     const struct dig_campaign_recording *const r, const size_t i,
+                                     const double scale, struct dig_measured *const m,
+                                     struct dig_error *const error)
 {
-    struct dig_recording recording = { 0 };
-    struct dig_observed  o         = { .trajectory = 0 };
-    struct dig_error     why       = { "" };
-    enum dig_status      status    = dig_recording_read(r->file, &recording, error);
+    const struct dig_curve_set *const set       = job->set;
+    struct dig_recording              recording = { 0 };
+    struct dig_observed               o         = { .trajectory = 0 };
+    struct dig_error                  why       = { "" };
+    enum dig_status                   status    = dig_recording_read(r->file, &recording, error);
     if (status == DIG_OK) {
         shrink(&recording, scale);
         status = dig_observe_dig(set, &recording, &o, &why);
@@ -93,8 +113,11 @@ static enum dig_status measure_force(const struct dig_campaign_recording *const 
         return status;
     }
     if (o.trajectory != m->trajectory) {
-        return dig_error_set(error, DIG_EINVAL, "%s: a dig along %s, campaign.yaml says %s",
-                             r->file, set->trajectory[o.trajectory].name, r->trajectory);
+        char yaml[DIG_CAMPAIGN_PATH];
+        return dig_yaml_refuse(yaml_of(job, yaml), error,
+                               "recordings[%zu].trajectory: \"%s\", expected %s, along which %s is "
+                               "dug",
+                               i, r->trajectory, set->trajectory[o.trajectory].name, r->file);
     }
     m->pace  = o.pace;
     m->first = o.first;
@@ -179,7 +202,7 @@ static enum dig_status load(const struct digloop_job *const  job,
     double          scale  = 1.0; // of force recordings; a machine knows its own
     enum dig_status status = digloop_check_scene(job, from->scene, &scale, error);
     if (status == DIG_OK) {
-        status = fill_heads(from, job->set, campaign->measured, error);
+        status = fill_heads(job, from, campaign->measured, error);
     }
     if (status == DIG_OK) {
         status = check_kinds(from, error);
@@ -192,7 +215,7 @@ static enum dig_status load(const struct digloop_job *const  job,
     }
     campaign->lambda = scale;
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
-        status = measure_force(&from->recording[i], job->set, scale, &campaign->measured[i], error);
+        status = measure_force(job, &from->recording[i], i, scale, &campaign->measured[i], error);
     }
     return status;
 }
