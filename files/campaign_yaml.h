@@ -1,5 +1,5 @@
 // Reads a campaign: a folder with campaign.yaml that lists recordings of digs and what each may be
-// used for (schema: docs/formats.md).
+// used for (schema: docs/formats/trace.md).
 
 #ifndef DIG_FILES_CAMPAIGN_YAML_H
 #define DIG_FILES_CAMPAIGN_YAML_H
