@@ -4,11 +4,40 @@
 #include "closed_loop/recordings/machine_dig.h"
 #include "closed_loop/recordings/reading_noise.h"
 #include "estimator/effects/effect.h"
+#include "estimator/track/window.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "closed_loop/machine/machine_side_private.h"
+
+// Why the moment of a dig is not told.
+static enum dig_status explain(const struct dig_machine_dig *const dig,
+                               const struct dig_curve_set *const set, const enum dig_status status,
+                               struct dig_error *const why)
+{
+    double gap_s = 0.0;
+    size_t after = dig->contact;
+    for (size_t i = dig->contact; i + 1 < dig->samples && i < dig->end; i++) {
+        const double s = dig->time_s[i + 1] - dig->time_s[i];
+        after          = s > gap_s ? i : after;
+        gap_s          = fmax(gap_s, s);
+    }
+    if (status != DIG_ENOMATCH) {
+        return dig_error_set(why, status, "%s", dig_status_str(status));
+    }
+    const double most_s = sqrt(dig->lambda) * dig_window_hole_s(set->smooth_half_s / dig->pace);
+    if (gap_s > most_s) {
+        return dig_error_set(why, status,
+                             "its moment is not told: no whole sample for %.2g s after t_s %.9g, "
+                             "expected none missing in its dig for more than %.2g s",
+                             gap_s, 1e-9 * (double)dig->sample[after].time_ns, most_s);
+    }
+    return dig_error_set(why, status,
+                         "its moment is not told: a pressure at relief or a drive at its stop for "
+                         "more than a tenth of the dig");
+}
 
 enum dig_status dig_machine_side_create(const struct dig_machine *const   machine,
                                         const struct dig_curve_set *const set, const size_t digs,
@@ -37,9 +66,7 @@ enum dig_status dig_machine_side_create(const struct dig_machine *const   machin
             status     = dig_machine_dig_measure(&made->machine, set, &made->dig[d],
                                                  &(struct dig_correction){ .delay_s = 0.0 },
                                                  DIG_MEASURE_WITH_SIGMA, &measured[d]);
-            (void)dig_error_set(&why, status,
-                                "its moment is not told: a pressure at relief or a "
-                                "drive at its stop for more than a tenth of the dig");
+            status     = status == DIG_OK ? status : explain(&made->dig[d], set, status, &why);
         }
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", measured[d].name, why.text);

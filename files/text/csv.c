@@ -117,6 +117,12 @@ static enum dig_status read_header(struct reader *const r, char *const line)
             r->at[c]  = f;
             asked_for = true;
         }
+        if (!asked_for && strchr(r->header[f], ';') != NULL) {
+            return dig_error_set(r->error, DIG_EINVAL,
+                                 "%s:%d: semicolons between columns, expected commas and decimal "
+                                 "points",
+                                 r->path, r->line);
+        }
         if (!asked_for) {
             return dig_error_set(r->error, DIG_EINVAL,
                                  "%s:%d: column \"%.40s\": unknown, expected a header of %s",

@@ -158,6 +158,7 @@ TEST(every_defect_of_a_force_recording_is_told_by_line_and_column)
         { "t_s,t_s,pin_z_m,theta_deg,Fx_N,Fy_N,Fz_N,Mx_Nm,My_Nm,Mz_Nm\n",
           ":1: column t_s: given twice" },
         { "t,x\n1,2\n", ":1: column \"t\": unknown" },
+        { "t_s;pin_x_m;pin_z_m\n1;2;3\n", ":1: semicolons between columns, expected commas" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,zero,0\n",
           ":3: column My_Nm: \"zero\", expected a finite number" },
         { FORCE "0,0,0,0,0,0,0,0,0,0\n.01,0,0,0,0,0,0,0,nan,0\n", ":3: column My_Nm: \"nan\"" },

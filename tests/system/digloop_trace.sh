@@ -180,6 +180,10 @@ for chamber in arm_head_Pa bucket_head_Pa; do
         refuses "clipped/b.csv: $chamber stays at its highest value" "clipped, expected" -- traced "$work/clipped"
 done
 
+mkdir "$work/cut" && cp "$work/whole/"* "$work/cut"
+awk -F, '!($1 > 12 && $1 < 13)' "$work/whole/b.csv" >"$work/cut/b.csv"
+check "rows missing within a dig are told as such" refuses "b.csv: its moment is not told: no whole sample for 1 s after t_s 12, expected none missing" -- "$work/cut"
+
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- traced "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit
