@@ -86,6 +86,8 @@ changed 's/x: .0, 1.0./x: [0, 1.0e+25]/' $scene huge.yaml
 refused "a box without bounds" 'huge.yaml: box_m: room for more than 2147483648 grains of material.diameter_m' dig "$work/huge.yaml" "${dig[@]}" -o "$out"
 changed 's/^time_step_s: .*/time_step_s: 1.0e-300/' $scene s.yaml
 refused "a step of nothing" 's.yaml: time_step_s: 1e-300, expected at least 1e-12' dig "$work/s.yaml" "${dig[@]}" -o "$out"
+digtable generate "$work/s.yaml" $grid -o "$work/never.sqlite"
+check "so it is of a grid, the scene named" eval 'is $code 1 && grep -q "/s.yaml: friction 0.3, .*packing 0: time_step_s: 1e-300, expected at least" $work/err'
 changed 's/duration_s: [0-9.]*/duration_s: 1.0e-9/' $scene s.yaml
 refused "a dig without a row" 's.yaml: trajectories: scrape gives 0 rows of output_s, expected 2 or more' dig "$work/s.yaml" "${dig[@]}" -o "$out"
 

@@ -265,6 +265,10 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
     struct dig_sweep_state state = { .digs_total = 0 };
     status = dig_sweep_run(scene, plan, &engine, &options, store, &state, &error);
     dig_store_close(store);
+    if (state.failed > 0) {
+        const struct dig_error found = error;
+        status = dig_error_set(&error, status, "%s: %s", a->positional[0], found.text);
+    }
     if (line.tty) {
         dig_progress_end(&line, true);
     }
