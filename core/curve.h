@@ -105,7 +105,7 @@ struct dig_curve {
 double dig_curve_mean_square(const float y[DIG_CURVE_POINTS]);
 
 #define DIG_COVARIANCE_BLOCKS  8 // of a path, equally long
-#define DIG_COVARIANCE_NUMBERS (DIG_FORCE_CHANNELS * DIG_COVARIANCE_BLOCKS)
+#define DIG_COVARIANCE_NUMBERS ((size_t)DIG_FORCE_CHANNELS * DIG_COVARIANCE_BLOCKS)
 
 /// How digs of one gravel along one trajectory differ from their mean: covariance of the means over
 /// the blocks of a curve, moment first, then the forces, each relative to the size of its channel's
