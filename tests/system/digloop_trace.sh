@@ -182,7 +182,7 @@ done
 
 mkdir "$work/cut" && cp "$work/whole/"* "$work/cut"
 awk -F, '!($1 > 12 && $1 < 13)' "$work/whole/b.csv" >"$work/cut/b.csv"
-check "rows missing within a dig are told as such" refuses "b.csv: its moment is not told: no whole sample for 1 s after t_s 12, expected none missing" -- "$work/cut"
+check "rows missing within a dig are told as such" refuses "b.csv: its moment is not told: no whole sample for 1 s after t_s 12, expected none missing" -- traced "$work/cut"
 
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- traced "$work/one"
