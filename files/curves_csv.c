@@ -109,8 +109,8 @@ static bool is_same_dig(const struct dig_foreign_dig *const a,
 static enum dig_status visit_dig(const struct reader *const r, size_t *const begin,
                                  const struct dig_foreign_visitor *const visitor)
 {
-    struct dig_foreign_dig dig;
-    struct dig_foreign_dig next;
+    struct dig_foreign_dig dig    = { .line = 0 };
+    struct dig_foreign_dig next   = { .line = 0 };
     enum dig_status        status = read_dig(r, *begin, &dig);
     size_t                 end    = *begin + 1;
     for (; status == DIG_OK && end < r->csv.rows; end++) {

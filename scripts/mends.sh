@@ -13,7 +13,7 @@ a start-up file of gnuplot is not run|closed_loop/report/plot.c|s/= "-d"/= "--"/
 a word of a shell line is quoted|core/shell.c|s/if (word.0. != .*$/if (true) {/|core/test_shell
 a name has no blank and no sign|core/name.c|s/789_.-"/789_.- `$"/|core/test_name
 an error is one line, whatever it quotes|core/error.c|s/(c = strpbrk(c, .*)) != NULL/c == NULL/|core/test_text
-a link in a folder of jobs is not followed|tools/digtable/job_folder.c|s/!S_ISREG(is.st_mode)/false/|digtable/test_job_folder
+a link in a folder of jobs is not followed|tools/digtable/job_folder.c|s/: !S_ISREG(is.st_mode)/: false/|digtable/test_job_folder
 a path stays in its folder|core/name.c|s/return !up;/return true;/|core/test_name
 a recording of a campaign stays in its folder|files/campaign_yaml.c|s/!dig_path_stays(name)/false/|files/test_campaign_yaml
 no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|firmware_host/test_hostile_texts

@@ -78,8 +78,8 @@ static double misfit_at(const struct dig_likelihood *const l, const double inver
 double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig_cell *const cell)
 {
     assert(l != NULL && cell != NULL);
-    struct channel_curve curve[DIG_FORCE_CHANNELS];
-    double               sum = 0.0;
+    struct channel_curve curve[DIG_FORCE_CHANNELS] = { { .mean = { 0.0 } } };
+    double               sum                       = 0.0;
     for (size_t c = 0; c < l->channels; c++) {
         make_curve(l, cell, c, &curve[c]);
     }

@@ -172,8 +172,8 @@ static enum dig_status take_address(const struct work *const work, const char *c
     const size_t      length = colon != NULL ? (size_t)(colon - text) : 0;
     char             *end    = NULL;
     const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
-    if (length == 0 || length >= sizeof address->host || end == colon + 1 || *end != '\0' ||
-        port < 1 || port > 65535) {
+    if (length == 0 || length >= sizeof address->host || end == NULL || end == colon + 1 ||
+        *end != '\0' || port < 1 || port > 65535) {
         return dig_yaml_refuse(work->path, work->error,
                                "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
     }

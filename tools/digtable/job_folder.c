@@ -77,39 +77,45 @@ static bool is_room(const char *const name)
     return is;
 }
 
-// What is opened or written in the folder is there: a link would lead elsewhere, a pipe would wait.
-static enum dig_status check_entries(const char *const path, const bool rooms_too,
+// What is opened or written there is of its own kind: a link would lead elsewhere, a pipe would
+// wait. has_rooms: the folders in it are those of a folder of jobs.
+static enum dig_status check_entries(const char *const path, const bool has_rooms,
                                      struct dig_error *const error)
 {
     DIR *const      dir    = opendir(path);
     enum dig_status status = DIG_OK;
-    if (dir == NULL && errno == ENOENT) {
-        return DIG_OK;
-    }
     if (dir == NULL) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+        return errno == ENOENT ? DIG_OK
+                               : dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
     }
     for (const struct dirent *entry; status == DIG_OK && (entry = readdir(dir)) != NULL;) {
         const char *const name = entry->d_name;
+        const bool        room = has_rooms && is_room(name);
         struct stat       is;
-        if (strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        // Gone since: another submit's.
+        if (strcmp(name, ".") == 0 || strcmp(name, "..") == 0 ||
+            fstatat(dirfd(dir), name, &is, AT_SYMLINK_NOFOLLOW) != 0) {
             continue;
         }
-        if (fstatat(dirfd(dir), name, &is, AT_SYMLINK_NOFOLLOW) != 0) {
-            continue; // gone since: another submit's
-        }
-        if (is_room(name) && rooms_too && S_ISDIR(is.st_mode)) {
-            char room[PATH_MAX];
-            (void)snprintf(room, sizeof room, "%s/%s", path, name);
-            status = check_entries(room, false, error);
-        } else if (!S_ISREG(is.st_mode) || (is_room(name) && rooms_too)) {
+        if (room ? !S_ISDIR(is.st_mode) : !S_ISREG(is.st_mode)) {
             status = dig_error_set(error, DIG_EINVAL,
                                    "%s/%s: expected a %s of digtable submit's, not a link or "
                                    "another kind of file",
-                                   path, name, is_room(name) && rooms_too ? "folder" : "file");
+                                   path, name, room ? "folder" : "file");
         }
     }
     (void)closedir(dir);
+    return status;
+}
+
+static enum dig_status check_folder(const struct dig_job_folder *const folder,
+                                    struct dig_error *const            error)
+{
+    char            path[PATH_MAX];
+    enum dig_status status = check_entries(folder->path, true, error);
+    for (size_t i = 0; i < sizeof rooms / sizeof rooms[0] && status == DIG_OK; i++) {
+        status = check_entries(dig_job_folder_file(folder, rooms[i], path), false, error);
+    }
     return status;
 }
 
@@ -130,7 +136,7 @@ enum dig_status dig_job_folder_open(const char *const path, struct dig_job_folde
     }
     enum dig_status status = find(table, &found, error);
     if (status == DIG_OK) {
-        status = check_entries(found.path, true, error);
+        status = check_folder(&found, error);
     }
     if (status == DIG_OK) {
         status =
@@ -181,7 +187,7 @@ static enum dig_status make_and_lock(struct dig_job_folder *const       folder,
         return dig_error_set(error, DIG_EINVAL, "%s: is in the way, and not of digtable submit",
                              folder->path);
     }
-    const enum dig_status checked = check_entries(folder->path, true, error);
+    const enum dig_status checked = check_folder(folder, error);
     if (checked != DIG_OK) {
         return checked;
     }
