@@ -157,7 +157,9 @@ const struct dig_command *dig_options_read(const struct dig_program *const progr
             refuse(program, command, found, argv[optind - 1 + skipped], error);
             return NULL;
         }
-        if (take(row[found], optarg, into, error) != DIG_OK) {
+        const struct dig_option *const told = row[found];
+        assert(told != NULL); // getopt says no other
+        if (take(told, optarg, into, error) != DIG_OK) {
             return NULL;
         }
     }

@@ -142,6 +142,7 @@ static enum dig_status take_force_rows(const struct dig_csv *const csv, const ch
     if (status != DIG_OK) {
         return status;
     }
+    assert(rows != NULL);
     memcpy(rows, csv->value, csv->rows * sizeof(struct dig_force_row));
     *recording = (struct dig_recording){ .rows = csv->rows, .row = rows };
     return DIG_OK;
