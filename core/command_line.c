@@ -107,44 +107,57 @@ static enum dig_status take(const struct dig_option *const o, const char *const 
                                o->unit != NULL ? o->unit : "");
 }
 
-const struct dig_command *dig_options_read(const struct dig_program *const program, const int argc,
-                                           char *argv[], void *const into,
-                                           struct dig_error *const error)
+// What getopt says of a short option is its letter, of a long one its row, from ROWS on.
+enum { VERSION = 1, ROWS = 256 };
+
+// What getopt is to know, and what it says of each of the program's.
+struct known {
+    struct option            option[OPTIONS_MAX + 3];
+    char                     letters[2 * OPTIONS_MAX + 3];
+    const struct dig_option *row[ROWS + OPTIONS_MAX];
+};
+
+static void list_options(const struct dig_program *const program,
+                         const struct dig_command *const command, struct known *const known)
 {
-    // What getopt says of a short option is its letter, of a long one its row, from ROWS on.
-    enum { VERSION = 1, ROWS = 256 };
-    assert(program != NULL && program->options < OPTIONS_MAX && into != NULL);
-    const struct dig_command *const command = find_command(program, argv[1], error);
-    if (command == NULL) {
-        return NULL;
-    }
-    struct option known[OPTIONS_MAX + 2] = {
-        { "help", no_argument, NULL, 'h' },
-        { "version", no_argument, NULL, VERSION },
-    };
-    char                     letters[2 * OPTIONS_MAX + 3] = ":h";
-    size_t                   options                      = 2;
-    const struct dig_option *row[ROWS + OPTIONS_MAX]      = { NULL };
+    size_t options = 2;
+    *known         = (struct known){ .option  = { { "help", no_argument, NULL, 'h' },
+                                                  { "version", no_argument, NULL, VERSION } },
+                                     .letters = ":h" };
     for (size_t i = 0; i < program->options; i++) {
         const struct dig_option *const o = &program->option[i];
         if (!dig_option_belongs(o, command)) {
             continue;
         }
-        known[options++] =
+        known->option[options++] =
             (struct option){ o->name, o->value != NULL ? required_argument : no_argument, NULL,
                              ROWS + (int)i };
-        row[ROWS + i] = o;
+        known->row[ROWS + i] = o;
         if (o->letter != 0) {
-            row[(unsigned char)o->letter] = o;
-            dig_text_add(sizeof letters, letters, "%c%s", o->letter, o->value != NULL ? ":" : "");
+            known->row[(unsigned char)o->letter] = o;
+            dig_text_add(sizeof known->letters, known->letters, "%c%s", o->letter,
+                         o->value != NULL ? ":" : "");
         }
     }
+}
+
+const struct dig_command *dig_options_read(const struct dig_program *const program, const int argc,
+                                           char *argv[], void *const into,
+                                           struct dig_error *const error)
+{
+    assert(program != NULL && program->options < OPTIONS_MAX && into != NULL);
+    const struct dig_command *const command = find_command(program, argv[1], error);
+    if (command == NULL) {
+        return NULL;
+    }
+    struct known known;
+    list_options(program, command, &known);
     // getopt sees the command in the program's place, and begins anew with 0.
     const int skipped = command == &program->self ? 0 : 1;
     optind            = 0;
     opterr            = 0;
-    for (int found;
-         (found = getopt_long(argc - skipped, argv + skipped, letters, known, NULL)) != -1;) {
+    for (int found; (found = getopt_long(argc - skipped, argv + skipped, known.letters,
+                                         known.option, NULL)) != -1;) {
         if (found == 'h') {
             dig_help_print(program, command, stdout);
             exit(dig_streams_end(program->self.name, EXIT_SUCCESS));
@@ -157,7 +170,7 @@ const struct dig_command *dig_options_read(const struct dig_program *const progr
             refuse(program, command, found, argv[optind - 1 + skipped], error);
             return NULL;
         }
-        const struct dig_option *const told = row[found];
+        const struct dig_option *const told = known.row[found];
         assert(told != NULL); // getopt says no other
         if (take(told, optarg, into, error) != DIG_OK) {
             return NULL;
