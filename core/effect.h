@@ -18,6 +18,7 @@
     effect(BUCKET_INERTIA, bucket_inertia)       \
     effect(PAYLOAD, payload)                     \
     effect(LINKAGE_GEOMETRY, linkage_geometry)   \
+    effect(ANGLE_OFFSET, angle_offset)           \
     effect(SENSOR_DELAY, sensor_delay)
 #define DIG_EFFECTS_OF_SOIL(effect)              \
     effect(COHESION, cohesion)                   \

@@ -7,7 +7,7 @@
 
 #include "closed_loop/fit/whitened_digs.h"
 
-#define DIG_STEPS_MAX 32
+#define DIG_STEPS_MAX 42
 
 struct dig_steps {
     size_t steps;

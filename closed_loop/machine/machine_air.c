@@ -241,6 +241,19 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
     return DIG_OK;
 }
 
+void dig_file_correct(const double file[DIG_FILE_ERRORS], struct dig_correction *const correction)
+{
+    assert(file != NULL && correction != NULL);
+    correction->level_rad += file[DIG_FILE_LEVEL_rad];
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const double *const          error = &file[(size_t)DIG_FILE_LINKS + 3 * j];
+        struct dig_added_mass *const link  = &correction->link[j];
+        link->mass_kg += error[0];
+        link->moment_kgm.x += error[1];
+        link->moment_kgm.y += error[2];
+    }
+}
+
 void dig_air_finish(struct dig_air *const air)
 {
     if (air != NULL) {

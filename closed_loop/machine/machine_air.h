@@ -11,6 +11,7 @@
 #include "closed_loop/recordings/machine_dig.h"
 #include "core/machine.h"
 #include "core/sample.h"
+#include "core/units.h"
 #include "estimator/wrench/correction.h"
 #include "estimator/wrench/rates.h"
 
@@ -37,15 +38,19 @@ struct dig_air_row {
     double         sigma_N;       // 1 sigma of the sensors
 };
 
-/// What a machine's file and its angle sensors may have wrong besides the catalogue's effects.
-/// Zeroed: nothing. Doubles only, read as an array.
-struct dig_file_error {
-    double angle_offset_rad[DIG_JOINTS]; // the sensor reads so much more than the joint's angle
-    double level_rad;                    // the machine is pitched so much more than it says
-    double link_kg[DIG_JOINTS];          // a link weighs so much more, in the file's centre
+/// What a machine's file may have wrong within its tolerance, a number each: by how much more the
+/// machine is pitched than it says, and of each link mass and moment as in struct dig_added_mass.
+enum dig_file_error {
+    DIG_FILE_LEVEL_rad,
+    DIG_FILE_LINKS, // kg, x and y in kgm; the boom's, the arm's, the bucket's
+    DIG_FILE_ERRORS = DIG_FILE_LINKS + 3 * DIG_JOINTS
 };
 
-#define DIG_FILE_ERRORS (sizeof(struct dig_file_error) / sizeof(double))
+/// 1 sigma of the level: a machine that does not say how it is pitched stands so level.
+#define DIG_FILE_LEVEL_SIGMA_rad (0.5 * DIG_RAD_PER_DEG)
+
+/// Adds such numbers to a correction.
+void dig_file_correct(const double file[DIG_FILE_ERRORS], struct dig_correction *correction);
 
 /// The air before or after one dig.
 struct dig_air_segment {
@@ -57,7 +62,6 @@ struct dig_air_segment {
 
     // What the poses of its points were last asked about with.
     struct dig_correction posed;
-    struct dig_file_error filed;
 };
 
 /// What of a point's balance pressures and friction have no part in.
@@ -71,7 +75,6 @@ struct dig_air_pose {
 /// Free with dig_air_finish().
 struct dig_air {
     struct dig_machine      machine;
-    struct dig_file_error   file; // taken off in every rest; the caller's to set
     size_t                  points, rows, segments;
     struct dig_air_point   *point;
     struct dig_air_row     *row;

@@ -72,38 +72,18 @@ static const struct dig_air_pose *pose_of(const struct dig_machine *const  corre
     return pose;
 }
 
-// True when numbers [from, to) of two structs of doubles are the same.
-static bool alike(const void *const a, const void *const b, const size_t from, const size_t to)
+// True when two corrections' numbers are the same from one on: they are structs of doubles.
+static bool alike(const struct dig_correction *const a, const struct dig_correction *const b,
+                  const size_t from)
 {
-    const double *const one   = a;
-    const double *const other = b;
+    const double *const one   = (const double *)(const void *)a;
+    const double *const other = (const double *)(const void *)b;
+    const size_t        to    = sizeof *a / sizeof(double);
     size_t              i     = from;
     while (i < to && fabs(one[i] - other[i]) <= 0.0) {
         i++;
     }
     return i == to;
-}
-
-// The machine with its links as heavy as they are.
-static struct dig_machine weighed(const struct dig_air *const        air,
-                                  const struct dig_correction *const correction)
-{
-    struct dig_machine corrected = dig_correction_machine(&air->machine, correction);
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        corrected.link[j].mass_kg += air->file.link_kg[j];
-    }
-    return corrected;
-}
-
-// The joints where they are.
-static void turn_by(const struct dig_file_error *const file, struct dig_sample *const sample)
-{
-    for (size_t j = 0; j < DIG_JOINTS; j++) {
-        sample->value[DIG_SIGNAL_BOOM_rad + j] -= file->angle_offset_rad[j];
-    }
-    // A missing pitch counts as level (estimator/wrench/wrench.h).
-    sample->value[DIG_SIGNAL_PITCH_rad] += file->level_rad;
-    sample->valid[DIG_SIGNAL_PITCH_rad] = true;
 }
 
 // What is left of the joints at one point, N at the rods, what friction takes of it, and what it
@@ -166,21 +146,18 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     const struct dig_air_point *const point   = &air->point[segment->first_point];
     double(*const loss_N)[DIG_JOINTS]         = rest_N + segment->points;
     double(*const more_N)[DIG_JOINTS]         = loss_N + segment->points;
-    const struct dig_machine   corrected      = weighed(air, correction);
+    const struct dig_machine   corrected      = dig_correction_machine(&air->machine, correction);
     struct dig_air_pose *const pose           = &air->pose[segment->first_point];
     // Levers, masses and delay follow all of a correction but the pressures'.
-    const size_t geometry = offsetof(struct dig_correction, bucket) / sizeof(double);
-    if (!alike(correction, &segment->posed, geometry, sizeof *correction / sizeof(double)) ||
-        !alike(&air->file, &segment->filed, 0, DIG_FILE_ERRORS)) {
+    const size_t geometry = offsetof(struct dig_correction, link) / sizeof(double);
+    if (!alike(correction, &segment->posed, geometry)) {
         segment->posed = *correction;
-        segment->filed = air->file;
         for (size_t p = 0; p < segment->points; p++) {
             pose[p].known = false;
         }
     }
     for (size_t p = 0; p < segment->points; p++) {
         struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
-        turn_by(&air->file, &at.sample);
         rest_at(&corrected, correction, &at, calm, &pose[p], rest_N[p], loss_N[p], more_N[p]);
     }
 }
@@ -222,12 +199,11 @@ void dig_air_forces(const struct dig_air *const air, const struct dig_correction
     for (size_t s = 0; s < air->segments; s++) {
         const struct dig_air_segment *const segment = &air->segment[s];
         const struct dig_air_point *const   point   = &air->point[segment->first_point];
-        const struct dig_machine            machine = weighed(air, &correction[s]);
+        const struct dig_machine machine = dig_correction_machine(&air->machine, &correction[s]);
         for (size_t p = 0; p < segment->points; p++) {
             const size_t to = DIG_JOINTS * (segment->first_point + p);
 
             struct dig_air_point at = delayed(point, segment->points, p, correction[s].delay_s);
-            turn_by(&air->file, &at.sample);
             forces_at(&machine, &correction[s], &at, &drive_N[to], &load_N[to]);
         }
     }

@@ -33,16 +33,77 @@ static size_t write_parameters(const struct dig_machine_search *const s,
     return effect->parameters;
 }
 
-// One answer by the narrow priors or the wide ones: its values, and a square root of the covariance
-// of its parameters. False where the wide ones are the narrow ones.
+// The numbers of an answer in their order: their columns, and their scales; 0: it has no column.
+struct numbers {
+    size_t n;
+    size_t column[DIG_MACHINE_NUMBERS];
+    double scale[DIG_MACHINE_NUMBERS];
+};
+
+static void add_number(const size_t column, const double scale, struct numbers *const to)
+{
+    to->column[to->n]  = column;
+    to->scale[to->n++] = scale;
+}
+
+static void list_numbers(const struct dig_lines *const lines, const size_t effects,
+                         const struct dig_model_effect effect[], struct numbers *const numbers)
+{
+    numbers->n = 0;
+    for (size_t e = 0; e < effects; e++) {
+        const struct dig_effect *const of = dig_effect_of(effect[e].effect);
+        for (size_t i = 0; i < of->parameters; i++) {
+            add_number(dig_lines_first(lines, of->id) + i, of->parameter[i].scale, numbers);
+        }
+    }
+    const size_t first = numbers->n;
+    for (size_t f = 0; f < DIG_FILE_ERRORS; f++) {
+        add_number(0, 0.0, numbers);
+    }
+    for (size_t c = 0; c < lines->columns; c++) {
+        if (lines->column[c].effect == DIG_EFFECT_UNLISTED) {
+            numbers->column[first + lines->column[c].parameter] = c;
+            numbers->scale[first + lines->column[c].parameter]  = lines->column[c].scale;
+        }
+    }
+}
+
+// A square root of the covariance of an answer's numbers, as last solved.
+static void write_steps(const struct dig_machine_search *const s,
+                        const struct numbers *const            numbers,
+                        struct dig_machine_answer *const       answer)
+{
+    double       lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
+    const size_t n   = numbers->n;
+    bool         any = false;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            const size_t at    = numbers->column[i] * s->fit.lines.columns + numbers->column[j];
+            const bool   known = numbers->scale[i] > 0.0 && numbers->scale[j] > 0.0;
+            lower[i * n + j]   = known ? s->fit.covariance[at] : 0.0;
+        }
+        lower[i * n + i] += least_variance; // of one that is not fitted
+        any = any || numbers->scale[i] > 0.0;
+    }
+    if (!any || dig_cholesky(n, lower) != DIG_OK) {
+        return;
+    }
+    answer->numbers = n;
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = k; i < n; i++) {
+            answer->step[k][i] = numbers->scale[i] * lower[i * n + k];
+        }
+    }
+}
+
+// One answer by the narrow priors or the wide ones: its values, and what is open of them. False
+// where the wide ones are the narrow ones.
 static bool write_answer(struct dig_machine_search *const s, const size_t effects,
                          const struct dig_model_effect effect[], const bool wide,
                          struct dig_machine_answer *const answer)
 {
     struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
-    size_t                column[DIG_MACHINE_NUMBERS];
-    double                scale[DIG_MACHINE_NUMBERS];
-    double                lower[DIG_MACHINE_NUMBERS * DIG_MACHINE_NUMBERS];
+    struct numbers        numbers;
     size_t                n   = 0;
     unsigned              set = 0;
     for (size_t e = 0; e < effects; e++) {
@@ -59,35 +120,28 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
     *answer = (struct dig_machine_answer){ .effects      = effects,
                                            .wide         = wide,
                                            .log_evidence = solved.log_evidence };
+    list_numbers(&s->fit.lines, effects, effect, &numbers);
     for (size_t e = 0; e < effects; e++) {
-        const struct dig_effect *const of    = dig_effect_of(effect[e].effect);
-        const size_t                   first = dig_lines_first(&s->fit.lines, of->id);
-        answer->effect[e]                    = effect[e];
-        for (size_t i = 0; i < of->parameters; i++) {
+        const struct dig_effect *const of = dig_effect_of(effect[e].effect);
+        answer->effect[e]                 = effect[e];
+        for (size_t i = 0; i < of->parameters; i++, n++) {
             const struct dig_effect_parameter *const parameter = &of->parameter[i];
 
-            const double value = parameter->absent + parameter->scale * s->fit.at[first + i];
-            answer->value[n]   = fmin(fmax(value, parameter->low), parameter->high);
-            scale[n]           = parameter->scale;
-            column[n++]        = first + i;
+            const double value =
+                parameter->absent + parameter->scale * s->fit.at[numbers.column[n]];
+            answer->value[n] = fmin(fmax(value, parameter->low), parameter->high);
         }
     }
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            lower[i * n + j] = s->fit.covariance[column[i] * s->fit.lines.columns + column[j]];
-        }
-        lower[i * n + i] += least_variance; // of one that is not fitted
-    }
-    if (dig_cholesky(n, lower) != DIG_OK) {
-        return true;
-    }
-    answer->numbers = n;
-    for (size_t k = 0; k < n; k++) {
-        for (size_t i = k; i < n; i++) {
-            answer->step[k][i] = scale[i] * lower[i * n + k];
-        }
-    }
+    dig_lines_file(&s->fit.lines, s->fit.at, answer->file);
+    memcpy(&answer->value[n], answer->file, sizeof answer->file);
+    write_steps(s, &numbers, answer);
     return true;
+}
+
+void dig_machine_write_none(struct dig_machine_search *const  s,
+                            struct dig_machine_finding *const finding)
+{
+    (void)write_answer(s, 0, NULL, false, &finding->none);
 }
 
 static void write_both(struct dig_machine_search *const s, const size_t effects,

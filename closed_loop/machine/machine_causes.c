@@ -18,8 +18,7 @@ static const double tie = 5.0;
 
 // Tolerances that a machine file does not state, 1 sigma: an angle sensor is set to half a degree,
 // a transmitter is of class 0.5 of its valve's relief pressure, its span known to a hundredth; a
-// gateway hands on what it has within ten milliseconds. The machine stands level within half a
-// degree where no pitch is measured.
+// gateway hands on what it has within ten milliseconds.
 static const double zero_rad    = 0.5 * DIG_RAD_PER_DEG;
 static const double span_share  = 0.01;
 static const double class_share = 0.005;
@@ -38,9 +37,6 @@ static const double wrong_late_s = 0.1;
 // A chamber that changes a push by less than this share of what the other does is a return side.
 static const double little_share = 0.5;
 
-// The columns of struct dig_file_error.
-enum { ANGLES = 0, LEVEL = DIG_JOINTS, LINKS = DIG_JOINTS + 1 };
-
 // The parameters of the effects, in the order of estimator/effects/.
 enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = 6, SEALS = 12 };
 
@@ -53,11 +49,6 @@ struct work {
     unsigned        asked;                        // a bit each
 };
 
-static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
-{
-    return &w->air->machine.cylinder[joint];
-}
-
 // A link's weight and where it lies are known together.
 static double weight_tolerance_kg(const struct dig_machine *const machine, const size_t joint)
 {
@@ -67,6 +58,11 @@ static double weight_tolerance_kg(const struct dig_machine *const machine, const
     const double share =
         lies_m > 0.0 ? machine->tolerance.com_share * link->length_m / lies_m : 0.0;
     return link->mass_kg * hypot(machine->tolerance.mass_share, share);
+}
+
+static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
+{
+    return &w->air->machine.cylinder[joint];
 }
 
 // 1 sigma of a cause: within its tolerance, and where it is wrong.
@@ -132,9 +128,10 @@ static int cause_of(const struct dig_lines_column *const column)
 {
     const size_t p = column->parameter;
     if (column->effect == DIG_EFFECT_UNLISTED) {
-        return p < LEVEL    ? at_joint(DIG_CAUSE_ZERO, p - ANGLES)
-               : p >= LINKS ? at_joint(DIG_CAUSE_WEIGHT, p - LINKS)
-                            : -1;
+        return p >= DIG_FILE_LINKS ? at_joint(DIG_CAUSE_WEIGHT, (p - DIG_FILE_LINKS) / 3) : -1;
+    }
+    if (column->effect == DIG_EFFECT_ANGLE_OFFSET) {
+        return at_joint(DIG_CAUSE_ZERO, p);
     }
     if (column->effect == DIG_EFFECT_PRESSURE_OFFSET) {
         return at_joint(p < GAINS ? DIG_CAUSE_OFFSET : DIG_CAUSE_FACTOR, p % GAINS / DIG_CHAMBERS);
@@ -150,7 +147,7 @@ static double allowed(const struct work *const w, const struct dig_lines_column 
     const struct dig_machine *const machine           = &w->air->machine;
     const size_t                    p                 = column->parameter;
     if (column->effect == DIG_EFFECT_UNLISTED) {
-        return zero_rad; // of the level
+        return DIG_FILE_LEVEL_SIGMA_rad;
     }
     if (column->effect == DIG_EFFECT_LINKAGE_GEOMETRY) {
         return machine->tolerance.pin_m;
@@ -345,9 +342,9 @@ static void rests(const struct work *const w, const double at[], double rms[DIG_
 
 static enum dig_status work_make(struct dig_air *const air, struct work *const w)
 {
-    double scale[DIG_FILE_ERRORS];
-    for (size_t p = 0; p < DIG_FILE_ERRORS; p++) {
-        scale[p] = p < LINKS ? DIG_RAD_PER_DEG : air->machine.link[p - LINKS].mass_kg;
+    double scale[DIG_FILE_ERRORS] = { [DIG_FILE_LEVEL_rad] = DIG_RAD_PER_DEG };
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        scale[(size_t)DIG_FILE_LINKS + 3 * j] = air->machine.link[j].mass_kg;
     }
     w->air = air;
     return dig_fit_make(air, scale, &w->fit);

@@ -44,7 +44,7 @@ struct dig_causes {
     double           rest_plain[DIG_JOINTS]; // and with nothing taken off
 };
 
-/// Fits. air: made of one recording; the causes named are in air->file and *correction after it.
+/// Fits. air: made of one recording; the causes named are in *correction after it.
 /// moves: joints of which causes are asked for. A second or two. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_causes_find(struct dig_air *air, const bool moves[DIG_JOINTS],
                                                struct dig_causes    *causes,

@@ -99,12 +99,14 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
     }
 }
 
-// The same width for all columns of a set.
-static void give_width(const struct dig_fit *const fit, const unsigned set, const size_t wide,
+// The same width for all columns of a set; of what the file may have wrong, its tolerance.
+static void give_width(const struct dig_fit *const fit, const unsigned set, const double wide,
                        double widths[])
 {
     for (size_t c = 0; c < fit->lines.columns; c++) {
-        widths[c] = ((set >> fit->lines.column[c].effect) & 1U) != 0 ? width[wide] : 0.0;
+        const enum dig_effect_id effect = fit->lines.column[c].effect;
+
+        widths[c] = effect == DIG_EFFECT_UNLISTED ? 1.0 : ((set >> effect) & 1U) != 0 ? wide : 0.0;
     }
 }
 
@@ -113,8 +115,9 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
                      struct dig_fit_answer *const answer)
 {
     double widths[DIG_LINES_COLUMNS_MAX];
-    give_width(fit, set, wide, widths);
+    give_width(fit, set, width[wide], widths);
     dig_fit_solve_each(fit, widths, answer);
+    answer->log_evidence -= fit->log_none;
     answer->width = width[wide];
 }
 
@@ -138,6 +141,17 @@ static void move_to_absent(struct dig_fit *const fit)
     for (size_t a = 0; a < n; a++) {
         fit->slope_rest[a] += more[a];
     }
+}
+
+void dig_fit_set_noise(struct dig_fit *const fit, const double s2)
+{
+    assert(fit != NULL && s2 > 0.0);
+    struct dig_fit_answer none = { .at = NULL };
+    double                widths[DIG_LINES_COLUMNS_MAX];
+    give_width(fit, 0, 0.0, widths);
+    fit->s2 = s2;
+    dig_fit_solve_each(fit, widths, &none);
+    fit->log_none = none.log_evidence;
 }
 
 void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double widths[])
@@ -167,11 +181,11 @@ void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double 
 
     struct dig_fit_answer best = { .at = NULL };
     double                effects[DIG_LINES_COLUMNS_MAX];
-    give_width(fit, DIG_MACHINE_ALL_EFFECTS, 0, effects);
+    give_width(fit, DIG_MACHINE_ALL_EFFECTS, width[0], effects);
     fit->s2 = 1.0;
     dig_fit_solve_each(fit, widths != NULL ? widths : effects, &best);
     const double free_rows = fmax(fit->rows - (double)n, 0.25 * fit->rows);
-    fit->s2                = fmax(1.0, best.rest2 / fmax(free_rows, 1.0));
+    dig_fit_set_noise(fit, fmax(1.0, best.rest2 / fmax(free_rows, 1.0)));
 }
 
 // The width that gives one effect the most evidence. Of several, none is narrow: a weak one beside

@@ -27,8 +27,9 @@ struct dig_fit {
     double           rows, rest2;
     double           slope_rest[DIG_LINES_COLUMNS_MAX]; // as struct dig_lines_normal
     double          *slope2;
-    double           s2;   // variance of the noise in the rows' sigmas
-    double          *work; // [columns * columns]
+    double           s2;       // variance of the noise in the rows' sigmas
+    double           log_none; // log evidence of no effect
+    double          *work;     // [columns * columns]
     // Room for answers.
     double  at[DIG_LINES_COLUMNS_MAX];
     double *covariance; // [columns * columns]
@@ -44,7 +45,8 @@ struct dig_fit_answer {
     double *covariance; // [columns * columns]
 };
 
-/// Lines up the parameters as dig_lines_make() does. DIG_ENOMEM: *fit is empty then.
+/// Lines up the parameters as dig_lines_make() does, what the file may have wrong among them: that
+/// has its prior in every answer. DIG_ENOMEM: *fit is empty then.
 DIG_MUST_CHECK enum dig_status
 dig_fit_make(struct dig_air *air, const double file_scale[DIG_FILE_ERRORS], struct dig_fit *fit);
 void dig_fit_finish(struct dig_fit *fit);
@@ -53,8 +55,11 @@ void dig_fit_finish(struct dig_fit *fit);
 /// columns with priors of these widths together leave; NULL: from what all effects do.
 void dig_fit_sum(struct dig_fit *fit, const double weight[], const double widths[]);
 
-/// Solves for the effects of the set, a bit each of enum dig_effect_id. A bent column stays where
-/// the lines have it.
+/// Another variance of the noise in the rows' sigmas than that.
+void dig_fit_set_noise(struct dig_fit *fit, double s2);
+
+/// Solves for the effects of the set, a bit each of enum dig_effect_id; the evidence is against no
+/// effect. A bent column stays where the lines have it.
 void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
 /// The same with priors as wide as the parameters' scales, which hold the more the less the air

@@ -45,8 +45,11 @@ static void list_columns(struct dig_lines *const lines, const double file_scale[
     for (size_t s = 0; s < lines->air->segments; s++) {
         lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
     }
-    for (size_t p = 0; file_scale != NULL && p < DIG_FILE_ERRORS; p++) {
-        lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_UNLISTED, p, -1, file_scale[p] };
+    for (size_t p = 0; p < DIG_FILE_ERRORS; p++) {
+        if (file_scale[p] > 0.0) {
+            lines->column[n++] =
+                (struct dig_lines_column){ DIG_EFFECT_UNLISTED, p, -1, file_scale[p] };
+        }
     }
     lines->columns = n;
 }
@@ -117,26 +120,38 @@ bool dig_lines_is_bent(const struct dig_lines *const lines, const size_t column)
     return known != NULL && known->parameter[c->parameter].bent; // a file error is no effect
 }
 
+void dig_lines_file(const struct dig_lines *const lines, const double at[],
+                    double file[DIG_FILE_ERRORS])
+{
+    assert(lines != NULL && at != NULL && file != NULL);
+    memset(file, 0, DIG_FILE_ERRORS * sizeof file[0]);
+    for (size_t c = 0; c < lines->columns; c++) {
+        const struct dig_lines_column *const column = &lines->column[c];
+        if (column->effect == DIG_EFFECT_UNLISTED) {
+            file[column->parameter] = column->scale * at[c];
+        }
+    }
+}
+
 void dig_lines_correct(const struct dig_lines *const lines, const double at[],
                        struct dig_correction correction[])
 {
     assert(lines != NULL && at != NULL && correction != NULL);
     double value[DIG_MACHINE_EFFECTS][DIG_MODEL_PARAMETERS_MAX];
-    double file[DIG_FILE_ERRORS] = { 0.0 };
+    double file[DIG_FILE_ERRORS];
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         dig_effect_absent(dig_effect_of((enum dig_effect_id)e), value[e]);
     }
     for (size_t c = 0; c < lines->columns; c++) {
         const struct dig_lines_column *const column = &lines->column[c];
-        if (column->effect == DIG_EFFECT_UNLISTED) {
-            file[column->parameter] = column->scale * at[c];
-        } else if (column->segment < 0) {
+        if (column->effect != DIG_EFFECT_UNLISTED && column->segment < 0) {
             value[column->effect][column->parameter] += column->scale * at[c];
         }
     }
-    memcpy(&lines->air->file, file, sizeof file);
+    dig_lines_file(lines, at, file);
     for (size_t s = 0; s < lines->air->segments; s++) {
         correction[s] = (struct dig_correction){ .delay_s = 0.0 };
+        dig_file_correct(file, &correction[s]);
         for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
             if (e != DIG_EFFECT_PAYLOAD || is_carrying(&lines->air->segment[s])) {
                 dig_effect_of((enum dig_effect_id)e)->correct(value[e], &correction[s]);

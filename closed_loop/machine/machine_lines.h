@@ -17,8 +17,8 @@
 
 #define DIG_MACHINE_ALL_EFFECTS ((1U << DIG_MACHINE_EFFECTS) - 1U)
 
-/// The bit of what a file may have wrong besides (struct dig_file_error): those columns are of no
-/// effect of the catalogue, DIG_EFFECT_UNLISTED, and there only where asked for.
+/// The bit of what a file may have wrong besides (enum dig_file_error): those columns are of no
+/// effect of the catalogue, DIG_EFFECT_UNLISTED.
 #define DIG_LINES_OF_FILE (1U << DIG_EFFECT_UNLISTED)
 
 #define DIG_LINES_COLUMNS_MAX                                                                      \
@@ -28,7 +28,7 @@
 
 struct dig_lines_column {
     enum dig_effect_id effect;
-    size_t             parameter; // of the effect, or of struct dig_file_error
+    size_t             parameter; // of the effect, or of enum dig_file_error
     int                segment;   // of its own, or -1: all
     double             scale;
 };
@@ -61,9 +61,8 @@ struct dig_lines {
 void dig_lines_carry(double own_kg, const struct dig_added_mass *common,
                      struct dig_added_mass *payload);
 
-/// Lines up the parameters at their absent values. The air must outlive it. file_scale, unless
-/// NULL: with what a file may have wrong besides as columns of these scales, as the array that
-/// struct dig_file_error is; they are in air->file where the lines stand. DIG_ENOMEM:
+/// Lines up the parameters at their absent values. The air must outlive it. file_scale: 1 sigma of
+/// what a file may have wrong besides, each a column; 0: that is right, and has none. DIG_ENOMEM:
 /// *lines is empty then.
 DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air   *air,
                                               const double      file_scale[DIG_FILE_ERRORS],
@@ -83,8 +82,10 @@ double dig_lines_judge(struct dig_lines *lines);
 /// What is left of every row in its sigmas at other values, not linear, trusted or not: rest[rows].
 void dig_lines_rest(const struct dig_lines *lines, const double at[], double rest[]);
 
-/// The corrections of all segments at these values, correction[segments], and into air->file what
-/// the file has wrong there.
+/// What the file has wrong at these values.
+void dig_lines_file(const struct dig_lines *lines, const double at[], double file[DIG_FILE_ERRORS]);
+
+/// The corrections of all segments at these values, correction[segments].
 void dig_lines_correct(const struct dig_lines *lines, const double at[],
                        struct dig_correction correction[]);
 

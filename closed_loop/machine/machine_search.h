@@ -42,6 +42,9 @@ void dig_machine_write_effects(struct dig_machine_search *s, const double inclus
 void dig_machine_write_sets(const struct dig_machine_search *s,
                             struct dig_machine_finding      *finding);
 
+/// No effect, with what the file may have wrong.
+void dig_machine_write_none(struct dig_machine_search *s, struct dig_machine_finding *finding);
+
 /// The set found, where it is of several, and every candidate alone, with what free air leaves
 /// open.
 void dig_machine_write_answers(struct dig_machine_search *s, struct dig_machine_finding *finding);

@@ -129,6 +129,7 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
 
 enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side,
                                        const size_t effects, const struct dig_model_effect effect[],
+                                       const double              file[DIG_FILE_ERRORS],
                                        const enum dig_apply      apply,
                                        const struct dig_measured measured[],
                                        double machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
@@ -142,6 +143,9 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
             continue;
         }
         status = correction_of(side, effects, effect, d, &correction);
+        if (status == DIG_OK && file != NULL) {
+            dig_file_correct(file, &correction);
+        }
         if (status == DIG_OK) {
             status = dig_machine_dig_measure(
                 &side->machine, side->set, &side->dig[d], &correction,

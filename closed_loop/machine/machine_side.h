@@ -4,6 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H
 
+#include "closed_loop/machine/machine_air.h"
 #include "closed_loop/model/candidate.h"
 #include "closed_loop/recordings/measured.h"
 #include "core/machine.h"
@@ -26,18 +27,21 @@ void dig_machine_side_destroy(struct dig_machine_side *side);
 
 #define DIG_MACHINE_AT_ONCE 2 // effects of the machine in one answer
 #define DIG_MACHINE_ANSWERS (2 * (DIG_MACHINE_EFFECTS + 1))
-#define DIG_MACHINE_NUMBERS (DIG_MACHINE_AT_ONCE * DIG_MODEL_PARAMETERS_MAX) // DIG_STEPS_MAX
+#define DIG_MACHINE_NUMBERS                                                                        \
+    (DIG_MACHINE_AT_ONCE * DIG_MODEL_PARAMETERS_MAX + DIG_FILE_ERRORS) // DIG_STEPS_MAX
 
-/// One answer of free air: effects with their values by one prior (machine_fit.h), and what it
-/// leaves open of these. With z of normal distribution the parameters, effect after effect, are
-/// value + the sum over k of z[k] step[k]. The prior that free air likes best is narrow, and says
-/// nothing of what free air does not tell; the wide one leaves that to the digs.
+/// One answer of free air: effects with their values by one prior (machine_fit.h), what the file
+/// has wrong beside them, and what it leaves open of these. With z of normal distribution the
+/// parameters, effect after effect, and then the file's are value + the sum over k of z[k] step[k].
+/// The prior that free air likes best is narrow, and says nothing of what free air does not tell;
+/// the wide one leaves that to the digs.
 struct dig_machine_answer {
     size_t                  effects;
     struct dig_model_effect effect[DIG_MACHINE_AT_ONCE];
-    bool                    wide;         // by the wide prior, not by the one free air likes best
+    bool                    wide; // by the wide prior, not by the one free air likes best
+    double                  file[DIG_FILE_ERRORS];
     double                  log_evidence; // of free air, against no effect
-    size_t                  numbers;      // parameters of all its effects; 0: not told
+    size_t                  numbers; // parameters of all its effects, and the file's; 0: not told
     double                  value[DIG_MACHINE_NUMBERS];
     double                  step[DIG_MACHINE_NUMBERS][DIG_MACHINE_NUMBERS]; // [k][parameter]
 };
@@ -55,6 +59,7 @@ struct dig_machine_finding {
     struct dig_candidate      candidate[DIG_TRACE_CANDIDATES_MAX]; // of the machine, best first
     size_t                    sets;
     struct dig_candidate_set  set[DIG_TRACE_SETS_MAX]; // that free air cannot tell apart
+    struct dig_machine_answer none;                    // no effect
     size_t                    answers; // the set found, if of several, and each candidate alone
     struct dig_machine_answer answer[DIG_MACHINE_ANSWERS];
     bool        by_digs; // the effects are told by free air and the digs together, not by air alone
@@ -72,15 +77,15 @@ DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *s
 /// differences of two such.
 enum dig_apply { DIG_APPLY_TO_ALL, DIG_APPLY_TO_FITTED, DIG_APPLY_ROUGHLY };
 
-/// Writes into machine[], by dig, what these effects (those of the machine among them) add to the
-/// measured curves; a payload, in a dig that was traced in, as much as that dig's was. Of a dig
-/// that they are not applied to nothing is written. DIG_ENOMATCH: a dig is not told with them (a
-/// cylinder at its stop, a bucket off its path, a value beyond its range); what was written by then
-/// is of no use. DIG_ENOMEM.
+/// Writes into machine[], by dig, what these effects (those of the machine among them) and what the
+/// file has wrong (NULL: nothing) add to the measured curves; a payload, in a dig that was traced
+/// in, as much as that dig's was. Of a dig that they are not applied to nothing is written.
+/// DIG_ENOMATCH: a dig is not told with them (a cylinder at its stop, a bucket off its path, a
+/// value beyond its range); what was written by then is of no use. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_machine_side_apply(const struct dig_machine_side *side, size_t effects,
-                       const struct dig_model_effect effect[], enum dig_apply apply,
-                       const struct dig_measured measured[],
-                       double                    machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
+                       const struct dig_model_effect effect[], const double file[DIG_FILE_ERRORS],
+                       enum dig_apply apply, const struct dig_measured measured[],
+                       double machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H

@@ -5,11 +5,15 @@
 #include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_side_private.h"
 #include "core/chance.h"
+#include "core/units.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+
+// Everything that has columns.
+static const unsigned all_columns = DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE;
 
 enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };
 
@@ -26,12 +30,34 @@ static void search_finish(struct dig_machine_search *const s)
     dig_air_finish(&s->air);
 }
 
+// The bucket's weight is an effect, and no error of the file.
+static void tolerance_of(const struct dig_air *const air, double scale[DIG_FILE_ERRORS])
+{
+    const struct dig_machine *const m = &air->machine;
+    memset(scale, 0, DIG_FILE_ERRORS * sizeof scale[0]);
+    for (size_t j = 0; j < DIG_JOINT_BUCKET; j++) {
+        double *const sigma = &scale[(size_t)DIG_FILE_LINKS + 3 * j];
+        sigma[0]            = m->tolerance.mass_share * m->link[j].mass_kg;
+        sigma[1]            = m->tolerance.com_share * m->link[j].length_m * m->link[j].mass_kg;
+        sigma[2]            = sigma[1];
+    }
+    // A machine that says how it is pitched knows.
+    if (air->points > 0 && !air->point[0].sample.valid[DIG_SIGNAL_PITCH_rad]) {
+        scale[DIG_FILE_LEVEL_rad] = DIG_FILE_LEVEL_SIGMA_rad;
+    }
+}
+
 static enum dig_status search_make(const struct dig_machine_side *const side,
                                    struct dig_machine_search *const     s)
 {
     const enum dig_status status =
         dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
-    return status == DIG_OK ? dig_fit_make(&s->air, NULL, &s->fit) : status;
+    double scale[DIG_FILE_ERRORS];
+    if (status != DIG_OK) {
+        return status;
+    }
+    tolerance_of(&s->air, scale);
+    return dig_fit_make(&s->air, scale, &s->fit);
 }
 
 // Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
@@ -39,14 +65,15 @@ static void refine(struct dig_machine_search *const s)
 {
     for (int i = 0; i < REFINEMENTS; i++) {
         const double s2 = s->fit.s2;
-        dig_lines_update(&s->fit.lines, s->set);
+        dig_lines_update(&s->fit.lines, s->set | DIG_LINES_OF_FILE);
         dig_fit_sum(&s->fit, NULL, NULL);
-        s->fit.s2                    = s2; // of all effects together, which these are not
+        dig_fit_set_noise(&s->fit, s2); // of all effects together, which these are not
         struct dig_fit_answer answer = { .at = s->fit.at };
         double                widths[DIG_LINES_COLUMNS_MAX];
         dig_fit_solve(&s->fit, s->set, &answer);
         for (size_t c = 0; c < s->fit.lines.columns; c++) {
-            widths[c] = answer.width; // of those that have left the set, too
+            // Of those that have left the set, too.
+            widths[c] = s->fit.lines.column[c].effect == DIG_EFFECT_UNLISTED ? 1.0 : answer.width;
         }
         if (dig_fit_step(&s->fit, widths) * answer.width < 0.005) {
             break;
@@ -54,7 +81,7 @@ static void refine(struct dig_machine_search *const s)
     }
     s->slow  = dig_lines_judge(&s->fit.lines);
     s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+    dig_lines_update(&s->fit.lines, all_columns);
     dig_fit_sum(&s->fit, NULL, NULL);
 }
 
@@ -62,13 +89,13 @@ static void refine(struct dig_machine_search *const s)
 static void begin(struct dig_machine_search *const s)
 {
     struct dig_fit_answer all = { .at = s->fit.at };
-    dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+    dig_lines_update(&s->fit.lines, all_columns);
     dig_fit_sum(&s->fit, NULL, NULL);
     dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
     s->noise2 = 1.0;
     if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
         s->noise2 = own_noise;
-        dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+        dig_lines_update(&s->fit.lines, all_columns);
         dig_fit_sum(&s->fit, NULL, NULL);
     }
     s->slow = dig_lines_judge(&s->fit.lines);
@@ -138,7 +165,7 @@ static void take_weight_for_payload(struct dig_machine_search *const s)
 static void join(struct dig_machine_search *const s, const unsigned first)
 {
     s->set = first;
-    for (int round = 1; s->set != 0 && round < ROUNDS; round++) {
+    for (int round = 1; round < ROUNDS; round++) {
         refine(s);
         // Where the first steps have led, others may do better, and some may not be needed.
         const unsigned before = s->set;
@@ -157,24 +184,39 @@ static void join(struct dig_machine_search *const s, const unsigned first)
 static void begin_again(struct dig_machine_search *const s)
 {
     memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
-    dig_lines_update(&s->fit.lines, DIG_MACHINE_ALL_EFFECTS);
+    dig_lines_update(&s->fit.lines, all_columns);
     dig_fit_sum(&s->fit, NULL, NULL);
     s->slow  = dig_lines_judge(&s->fit.lines);
     s->rest2 = s->rest2_none;
 }
 
+// The one of the set that explains most alone.
+static unsigned leader_of(const struct dig_machine_search *const s, const unsigned set)
+{
+    double   most = -INFINITY;
+    unsigned best = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        const unsigned one = set & (1U << e);
+        if (one != 0 && dig_fit_evidence(&s->fit, one) > most) {
+            most = dig_fit_evidence(&s->fit, one);
+            best = one;
+        }
+    }
+    return best;
+}
+
 static void select_effects(struct dig_machine_search *const s)
 {
-    static const unsigned rubs = 1U << DIG_EFFECT_CYLINDER_FRICTION;
     begin(s);
     rest_by_dig(s);
     s->rest2_none        = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
     s->rest2             = s->rest2_none;
     const unsigned first = dig_fit_select(&s->fit, s->least, 0);
-    // What friction explains tells how far to trust rows of drives that stand: it goes first. But
-    // alone it may take a strong effect for its own, and then stays there.
-    join(s, (first & rubs) != 0 ? rubs : first);
-    if ((first & rubs) != 0 && first != rubs && is_unclear(s)) {
+    // Where one leads, the others may not be needed: they explain what its slope there does not.
+    // But alone it may take a strong effect for its own, and then stays there.
+    const unsigned leads = leader_of(s, first);
+    join(s, leads);
+    if (first != leads && is_unclear(s)) {
         begin_again(s);
         join(s, first);
     }
@@ -204,7 +246,7 @@ static void doubt_names(struct dig_machine_search *const s)
 {
     s->drift = dig_machine_drift_ask(&s->fit.lines, s->fit.s2);
     if (s->set == 0 || !(s->drift.log_lead > DIG_MACHINE_TIE) ||
-        s->drift.log_evidence < dig_fit_evidence(&s->fit, s->set)) {
+        s->drift.log_evidence < s->fit.log_none + dig_fit_evidence(&s->fit, s->set)) {
         s->drift.follows = NULL;
     }
 }
@@ -238,6 +280,7 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
         dig_machine_write_candidates(&s, inclusion, finding);
         dig_machine_write_own_payload(&s, side->own_payload_kg);
         if (!unclear) {
+            dig_machine_write_none(&s, finding);
             dig_machine_write_effects(&s, inclusion, finding);
             dig_machine_write_sets(&s, finding);
             dig_machine_write_answers(&s, finding);

@@ -78,11 +78,33 @@ static void solve_all(const struct dig_machine *const     machine,
     }
 }
 
+// Where the dig lies by the corrected angles: elsewhere than by those it was found by, where these
+// read too much. room: as many points as readings.
+static struct dig_track track_of(const struct dig_curve_set *const   set,
+                                 const struct dig_machine_dig *const dig,
+                                 const struct dig_correction *const correction, const size_t from,
+                                 const size_t to, const size_t every,
+                                 const struct reading reading[], struct dig_path_point room[])
+{
+    size_t points = 0;
+    double turned = 0.0;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        turned += fabs(correction->angle_rad[j]);
+    }
+    for (size_t i = from; i < to && turned > 0.0; i += every) {
+        if (i >= dig->contact && i < dig->end && reading[i - from].solved) {
+            room[points++] = reading[i - from].pose;
+        }
+    }
+    return points > 0 ? dig_machine_dig_fit(set, dig, points, room) : dig->track;
+}
+
 // One channel through the estimator's window.
 static bool observe(const struct dig_curve_set *const set, const struct dig_machine_dig *const dig,
-                    const size_t from, const size_t to, const size_t every,
-                    const struct reading reading[], const enum dig_channel channel,
-                    struct dig_window *const window, struct dig_observation *const observation)
+                    const struct dig_track *const track, const size_t from, const size_t to,
+                    const size_t every, const struct reading reading[],
+                    const enum dig_channel channel, struct dig_window *const window,
+                    struct dig_observation *const observation)
 {
     const double scale = pow(dig->lambda, channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
     size_t       told  = 0;
@@ -116,13 +138,14 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
     }
     const struct dig_route route = dig_route_make(&set->trajectory[dig->trajectory], set->tooth_m);
     return of > 0 && (double)told >= enough_share * (double)of &&
-           dig_window_observe(window, &route, &dig->track, 0.18 * set->tooth_m, set->smooth_half_s,
+           dig_window_observe(window, &route, track, 0.18 * set->tooth_m, set->smooth_half_s,
                               observation) == DIG_OK;
 }
 
 // By what the window holds, observed along its route.
 static void tell_path_depth(const struct dig_curve_set *const   set,
                             const struct dig_machine_dig *const dig,
+                            const struct dig_track *const       track,
                             const struct dig_window *const      window,
                             double                              deeper[const DIG_CURVE_POINTS])
 {
@@ -132,7 +155,7 @@ static void tell_path_depth(const struct dig_curve_set *const   set,
     for (size_t i = 0; i < window->count; i++) {
         const double time_s = window->sample[i].time_s * sqrt(dig->lambda);
         if (time_s >= dig->time_s[dig->contact] && time_s < dig->time_s[dig->end - 1]) {
-            dig_path_depth_add(&depth, &route, set->tooth_m, dig->track.turn_m / set->tooth_m,
+            dig_path_depth_add(&depth, &route, set->tooth_m, track->turn_m / set->tooth_m,
                                window->progress[i], &window->sample[i].pose);
         }
     }
@@ -174,19 +197,22 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
     const size_t             rows    = to > from ? to - from : 0;
     const size_t             every   = how == DIG_MEASURE_ROUGHLY ? rows / DIG_CURVE_POINTS + 1 : 1;
     struct reading *const    reading = malloc((rows + 1) * sizeof *reading);
-    if (window == NULL || reading == NULL) {
+    struct dig_path_point *const room = malloc((rows + 1) * sizeof *room);
+    if (window == NULL || reading == NULL || room == NULL) {
         free(window);
         free(reading);
+        free(room);
         return DIG_ENOMEM;
     }
     solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from, to, every,
               reading);
 
-    enum dig_status status = DIG_OK;
+    const struct dig_track track  = track_of(set, dig, correction, from, to, every, reading, room);
+    enum dig_status        status = DIG_OK;
     for (int c = DIG_FORCE_CHANNELS - 1; c >= 0 && status == DIG_OK; c--) {
         struct dig_observation o = { .first = 0.0 };
         measured->measured[c] =
-            observe(set, dig, from, to, every, reading, (enum dig_channel)c, window, &o);
+            observe(set, dig, &track, from, to, every, reading, (enum dig_channel)c, window, &o);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             measured->value[c][k] = measured->measured[c] ? o.moment_Nm[k] : 0.0;
             measured->sigma[c][k] = measured->measured[c] ? o.sigma_Nm[k] : 0.0;
@@ -199,11 +225,12 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
             measured->trajectory = dig->trajectory;
             tell_pitch(dig, measured);
             if (status == DIG_OK && dig_approach_varies(set, (size_t)dig->trajectory)) {
-                tell_path_depth(set, dig, window, measured->deeper);
+                tell_path_depth(set, dig, &track, window, measured->deeper);
             }
         }
     }
     free(window);
     free(reading);
+    free(room);
     return status;
 }

@@ -147,6 +147,20 @@ static struct found search(const struct dig_curve_set *const set, const struct v
     return best;
 }
 
+struct dig_track dig_machine_dig_fit(const struct dig_curve_set *const   set,
+                                     const struct dig_machine_dig *const dig, const size_t points,
+                                     const struct dig_path_point point[])
+{
+    assert(set != NULL && dig != NULL && points > 0 && point != NULL);
+    const struct dig_route route = dig_approach_route(set, (size_t)dig->trajectory);
+    struct dig_path        path  = { .spacing_m = 0.5 * spacing_share * set->tooth_m };
+    dig_path_add_contact(&path, &point[0]);
+    for (size_t i = 1; i < points; i++) {
+        (void)dig_path_add(&path, &point[i], true);
+    }
+    return dig_track_fit(&route, &path, limit_share * set->tooth_m);
+}
+
 // The shift as the estimator fits it, from the vertices of the dig and some before.
 static struct dig_track fit_track(const struct dig_route *const route,
                                   const struct vertices *const v, const struct found *const found,

@@ -83,6 +83,28 @@ static double soil_evidence(const struct dig_whitened_digs *const batch,
     return -0.5 * misfit;
 }
 
+// The digs with what an answer adds taken off, its numbers open or not: the evidence of the digs,
+// and of what is open the numbers. DIG_ENOMATCH: a dig is not told with it.
+static enum dig_status weigh_digs(const struct dig_trace_work *const     w,
+                                  const struct dig_machine_answer *const answer, const bool open,
+                                  double *const evidence, double z[DIG_STEPS_MAX])
+{
+    struct dig_whitened_digs batch;
+    struct dig_steps         steps;
+    struct dig_fitted        soil;
+    const enum dig_status    status =
+        open ? dig_machine_steps_make(w, answer, &steps)
+                : dig_trace_apply(w, answer->effects, answer->effect, answer->file);
+    memset(z, 0, DIG_STEPS_MAX * sizeof z[0]);
+    if (status == DIG_OK) {
+        take_off_batch(w->batch, &batch);
+        batch.steps = open ? &steps : NULL;
+        *evidence   = soil_evidence(&batch, &soil);
+        memcpy(z, soil.z, open ? DIG_STEPS_MAX * sizeof z[0] : 0);
+    }
+    return status;
+}
+
 static void keep_best(const struct dig_machine_answer *const answer, const size_t from,
                       const double evidence, const double z[], struct choice *const choice)
 {
@@ -99,20 +121,15 @@ static void keep_best(const struct dig_machine_answer *const answer, const size_
 static enum dig_status weigh(const struct dig_trace_work *const w, const size_t from,
                              struct choice *const choice)
 {
-    static const double       none[DIG_STEPS_MAX] = { 0.0 };
-    struct dig_machine_answer answer              = w->air->answer[from];
-    struct dig_whitened_digs  batch;
-    struct dig_steps          steps;
-    struct dig_fitted         soil;
-    const enum dig_status     status = answer.wide ? dig_machine_steps_make(w, &answer, &steps)
-                                                   : dig_trace_apply(w, answer.effects, answer.effect);
+    struct dig_machine_answer answer = w->air->answer[from];
+    double                    soil   = 0.0;
+    double                    z[DIG_STEPS_MAX];
+    const enum dig_status     status = answer.wide && answer.numbers == 0
+                                           ? DIG_ENOMATCH
+                                           : weigh_digs(w, &answer, answer.wide, &soil, z);
     if (status == DIG_OK) {
-        take_off_batch(w->batch, &batch);
-        batch.steps           = answer.wide ? &steps : NULL;
-        const double evidence = answer.log_evidence + soil_evidence(&batch, &soil) - choice->soil0;
-        const double *const z = answer.wide ? soil.z : none;
         dig_machine_steps_values(z, NULL, &answer);
-        keep_best(&answer, from, evidence, z, choice);
+        keep_best(&answer, from, answer.log_evidence + soil - choice->soil0, z, choice);
     }
     return status == DIG_ENOMATCH ? DIG_OK : status;
 }
@@ -201,6 +218,7 @@ static void leave_open(const struct choice *const choice, struct dig_trace_open 
             open->answer.value[n++] = choice->best.effect[e].parameter[p].value;
         }
     }
+    memcpy(&open->answer.value[n], choice->best.file, sizeof choice->best.file);
 }
 
 // Nothing has a name; significant: whether anything is there all the same.
@@ -218,10 +236,11 @@ static enum dig_status choose(struct dig_trace_work *const w, struct choice *con
     const double                      level   = w->settings->false_alarm / 2.0;
     const double                      least   = log((double)air->candidates / level);
     double                            unnamed = -INFINITY;
-    enum dig_status                   status  = DIG_OK;
-    struct dig_fitted                 soil;
-    choice->evidence = -INFINITY;
-    choice->soil0    = soil_evidence(w->batch, &soil);
+    struct dig_machine_answer         none    = air->none;
+    double                            z[DIG_STEPS_MAX];
+    choice->evidence       = -INFINITY;
+    enum dig_status status = weigh_digs(w, &none, none.numbers > 0, &choice->soil0, z);
+    dig_machine_steps_values(z, NULL, &none);
     // All that an answer could explain of the digs.
     const double left = 0.5 * (w->before.squares - dig_whitened_digs_about(w->batch));
     for (size_t i = 0; i < air->answers; i++) {
@@ -238,10 +257,12 @@ static enum dig_status choose(struct dig_trace_work *const w, struct choice *con
     }
     if (choice->evidence >= fmax(least, unnamed)) {
         write_choice(choice, least, air);
-        leave_open(choice, w->open);
     } else {
         write_none(unnamed >= least, air);
+        choice->best = none;
+        memcpy(choice->z, z, sizeof choice->z);
     }
+    leave_open(choice, w->open);
     return status;
 }
 
@@ -255,8 +276,8 @@ static enum dig_status weigh_in_soil(struct dig_trace_work *const   w,
     for (size_t e = 0; e < w->air->effects && status == DIG_OK; e++) {
         struct dig_model_effect *const effect = &w->air->effect[e];
 
-        status = dig_machine_side_apply(w->machine, 1, effect, DIG_APPLY_TO_FITTED, w->measured,
-                                        machine);
+        status = dig_machine_side_apply(w->machine, 1, effect, NULL, DIG_APPLY_TO_FITTED,
+                                        w->measured, machine);
         if (status == DIG_OK) {
             w->size[e] = dig_effect_size_of_machine(
                 w->batch, plain, (const double(*)[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])machine);
@@ -280,12 +301,12 @@ enum dig_status dig_trace_machine(struct dig_trace_work *const w, struct dig_err
     if (status == DIG_OK && open->answer.numbers > 0) {
         status = dig_machine_steps_make(w, &open->answer, &open->steps);
     } else if (status == DIG_OK) {
-        status = dig_trace_apply(w, w->air->effects, w->air->effect);
+        status = dig_trace_apply(w, w->air->effects, w->air->effect, open->answer.file);
     }
     if (status == DIG_ENOMATCH) { // a holdout is not told with what the digs made of it
         write_none(true, w->air);
         open->answer.numbers = 0;
-        status               = dig_trace_apply(w, 0, NULL);
+        status               = dig_trace_apply(w, 0, NULL, NULL);
     }
     if (status == DIG_OK) {
         status = dig_trace_batch(w, &plain, error);
@@ -310,10 +331,10 @@ enum dig_status dig_trace_settle_machine(struct dig_trace_work *const w, const d
         return DIG_OK;
     }
     dig_machine_steps_values(w->search->chosen.z, covariance, &answer);
-    const enum dig_status status = dig_trace_apply(w, answer.effects, answer.effect);
+    const enum dig_status status = dig_trace_apply(w, answer.effects, answer.effect, answer.file);
     if (status == DIG_ENOMATCH) { // a holdout is told with the values that were chosen alone
         memset(w->search->chosen.z, 0, sizeof w->search->chosen.z);
-        return dig_trace_apply(w, w->air->effects, w->air->effect);
+        return dig_trace_apply(w, w->air->effects, w->air->effect, w->open->answer.file);
     }
     for (size_t e = 0; e < answer.effects; e++) {
         memcpy(w->air->effect[e].parameter, answer.effect[e].parameter,

@@ -39,14 +39,21 @@ void dig_machine_steps_values(const double z[], const double covariance[],
             to->high = to->value + ninety * sqrt(fmax(variance, 0.0));
         }
     }
+    for (size_t f = 0; answer->numbers > 0 && f < DIG_FILE_ERRORS; f++, n++) {
+        answer->file[f] = answer->value[n];
+        for (size_t k = 0; k < answer->numbers; k++) {
+            answer->file[f] += z[k] * answer->step[k][n];
+        }
+    }
 }
 
 enum dig_status dig_trace_apply(const struct dig_trace_work *const w, const size_t effects,
-                                const struct dig_model_effect effect[])
+                                const struct dig_model_effect effect[],
+                                const double                  file[DIG_FILE_ERRORS])
 {
     double                machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    const enum dig_status status =
-        dig_machine_side_apply(w->machine, effects, effect, DIG_APPLY_TO_ALL, w->measured, machine);
+    const enum dig_status status = dig_machine_side_apply(w->machine, effects, effect, file,
+                                                          DIG_APPLY_TO_ALL, w->measured, machine);
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         memcpy(w->measured[i].machine, machine[i], sizeof machine[i]);
     }
@@ -61,8 +68,9 @@ static enum dig_status added_at(const struct dig_trace_work *const     w,
     double                    machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     struct dig_machine_answer there = *answer;
     dig_machine_steps_values(z, NULL, &there);
-    const enum dig_status status = dig_machine_side_apply(w->machine, there.effects, there.effect,
-                                                          DIG_APPLY_ROUGHLY, w->measured, machine);
+    const enum dig_status status =
+        dig_machine_side_apply(w->machine, there.effects, there.effect, there.file,
+                               DIG_APPLY_ROUGHLY, w->measured, machine);
     if (status != DIG_OK) {
         return status;
     }
@@ -80,6 +88,16 @@ static enum dig_status added_at(const struct dig_trace_work *const     w,
     return DIG_OK;
 }
 
+// Whether a step changes anything: what the file has exactly is not open.
+static bool is_open(const struct dig_machine_answer *const answer, const size_t k)
+{
+    bool open = false;
+    for (size_t i = 0; i < DIG_MACHINE_NUMBERS; i++) {
+        open = open || fabs(answer->step[k][i]) > 0.0;
+    }
+    return open;
+}
+
 enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
                                        const struct dig_machine_answer *const answer,
                                        struct dig_steps *const                steps)
@@ -94,11 +112,14 @@ enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
     }
     steps->steps = answer->numbers;
     dig_machine_steps_values(z, NULL, &there);
-    enum dig_status status = dig_trace_apply(w, there.effects, there.effect);
+    enum dig_status status = dig_trace_apply(w, there.effects, there.effect, there.file);
     if (status == DIG_OK) {
         status = added_at(w, answer, z, middle);
     }
     for (size_t k = 0; k < answer->numbers && status == DIG_OK; k++) {
+        if (!is_open(answer, k)) {
+            continue;
+        }
         z[k]   = 1.0;
         status = added_at(w, answer, z, steps->of[k]);
         z[k]   = 0.0;

@@ -150,7 +150,7 @@ static enum dig_status work_out(const struct dig_trace_work *const w, const enum
     }
     dig_effect_of(id)->correct(value, &made->correction);
     double                machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    const enum dig_status status = dig_machine_side_apply(w->machine, 1, &made->effect,
+    const enum dig_status status = dig_machine_side_apply(w->machine, 1, &made->effect, NULL,
                                                           DIG_APPLY_TO_ALL, w->measured, machine);
     for (size_t i = 0; i < w->digs && status == DIG_OK; i++) {
         dig_features_of((const double(*)[DIG_CURVE_POINTS])machine[i], made->feature[i]);

@@ -105,13 +105,20 @@ static void fill_decision(const struct dig_trace_work *const w, struct dig_trace
     trace->high          = dig_response_surface_gravel(surface, s->chosen.high);
 }
 
+// Whether nothing was found but what the machine's file has wrong within its tolerance, which tells
+// the gravel and is no effect.
+static bool is_as_filed(const struct dig_trace_work *const w)
+{
+    return w->air->effects == 0 && !w->search->significant && w->open->answer.numbers > 0;
+}
+
 // A change is named, but not made, that is likely to make the next dig's error worse, or that has
 // made it worse already: forces may ask for what the moment does not.
 static void drop_what_is_not_worth_it(const struct dig_trace_work *const w,
                                       struct dig_trace *const            trace)
 {
     trace->applied =
-        w->confirmed &&
+        w->confirmed && !is_as_filed(w) &&
         dig_decision_brings_nearer(w->set, w->digs, w->measured, trace->curves, w->fit) &&
         dig_decision_chance_of_worse(w->set, w->scatter, w->digs, w->measured, trace->curves) <=
             most_chance_of_worse;
@@ -281,7 +288,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     dig_trace_confirm_without_air(w);
     dig_steps_settle(w->batch, w->search->chosen.z);
     // Nothing was found that is corrected: nothing changes.
-    if (w->air->effects == 0 && !w->search->significant) {
+    if (w->air->effects == 0 && !w->search->significant && !is_as_filed(w)) {
         w->search->chosen = w->before;
     }
     status = dig_trace_ground(w, &trace->ground, error);

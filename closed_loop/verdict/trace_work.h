@@ -40,10 +40,11 @@ struct dig_trace_work {
     bool                         confirmed; // what was chosen may be applied: see below
 };
 
-/// Leaves in w->measured[].machine what these effects add to every dig; fails as
-/// dig_machine_side_apply(), and leaves it as it was then.
+/// Leaves in w->measured[].machine what these effects and what the file has wrong add to every dig;
+/// fails as dig_machine_side_apply(), and leaves it as it was then.
 DIG_MUST_CHECK enum dig_status dig_trace_apply(const struct dig_trace_work *w, size_t effects,
-                                               const struct dig_model_effect effect[]);
+                                               const struct dig_model_effect effect[],
+                                               const double                  file[DIG_FILE_ERRORS]);
 
 /// The batch of the digs to fit to, its scatter that of the gravel it turns out to be (*plain).
 DIG_MUST_CHECK enum dig_status dig_trace_batch(const struct dig_trace_work *w,

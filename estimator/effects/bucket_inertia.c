@@ -4,7 +4,7 @@
 
 static void correct(const double value[], struct dig_correction *const correction)
 {
-    correction->bucket.inertia_kgm2 += value[0];
+    correction->link[DIG_JOINT_BUCKET].inertia_kgm2 += value[0];
 }
 
 const struct dig_effect dig_effect_bucket_inertia = {

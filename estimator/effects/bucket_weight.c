@@ -7,9 +7,9 @@ enum { MASS, MOMENT_X, MOMENT_Y, PARAMETERS };
 
 static void correct(const double value[], struct dig_correction *const correction)
 {
-    correction->bucket.mass_kg += value[MASS];
-    correction->bucket.moment_kgm.x += value[MOMENT_X];
-    correction->bucket.moment_kgm.y += value[MOMENT_Y];
+    correction->link[DIG_JOINT_BUCKET].mass_kg += value[MASS];
+    correction->link[DIG_JOINT_BUCKET].moment_kgm.x += value[MOMENT_X];
+    correction->link[DIG_JOINT_BUCKET].moment_kgm.y += value[MOMENT_Y];
 }
 
 const struct dig_effect dig_effect_bucket_weight = {

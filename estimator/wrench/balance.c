@@ -54,9 +54,11 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
     if (sample->valid[DIG_SIGNAL_PITCH_rad]) {
         r.pitch_rad = sample->value[DIG_SIGNAL_PITCH_rad];
     }
+    r.pitch_rad += correction != NULL ? correction->level_rad : 0.0;
     enum dig_status status = isfinite(r.pitch_rad) ? DIG_OK : DIG_EINVAL;
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        r.joint_rad[j] = sample->value[DIG_SIGNAL_BOOM_rad + j];
+        r.joint_rad[j] = sample->value[DIG_SIGNAL_BOOM_rad + j] -
+                         (correction != NULL ? correction->angle_rad[j] : 0.0);
         status = isfinite(r.joint_rad[j]) ? take_push(machine, correction, sample, j, &r.push[j])
                                           : DIG_EINVAL;
     }

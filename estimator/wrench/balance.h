@@ -34,7 +34,7 @@ struct dig_balance {
     bool             moment_ok, force_ok;
 };
 
-/// Converts a sample; a correction (NULL: none) is applied to its pressures first. A drive that
+/// Converts a sample; a correction (NULL: none) is applied to its readings first. A drive that
 /// lacks a pressure has push 0 and is not valid. DIG_ESTALE, DIG_EINVAL as dig_wrench_solve().
 /// rates: NULL only without correction.
 DIG_MUST_CHECK enum dig_status dig_readings_take(const struct dig_machine    *machine,

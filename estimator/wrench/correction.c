@@ -51,7 +51,9 @@ struct dig_machine dig_correction_machine(const struct dig_machine *const    mac
 {
     assert(machine != NULL && correction != NULL);
     struct dig_machine made = *machine;
-    add_burden(&made.link[DIG_JOINT_BUCKET], &correction->bucket);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        add_burden(&made.link[j], &correction->link[j]);
+    }
     add_burden(&made.link[DIG_JOINT_BUCKET], &correction->payload);
     move_pins(&made, 1.0, correction);
     return made;

@@ -29,11 +29,11 @@ struct dig_friction {
 /// Width of the transition about standstill, where the direction of friction is not defined, m/s.
 #define DIG_FRICTION_STILL_mps 0.003
 
-/// Mass in or on the bucket beyond the file's. With mass_kg alone it lies in the file's centre of
+/// Mass in or on a link beyond the file's. With mass_kg alone it lies in the file's centre of
 /// mass and leaves the inertia about the centre unchanged.
 struct dig_added_mass {
     double          mass_kg;
-    struct dig_vec2 moment_kgm;   // mass times distance from the file's centre, bucket frame
+    struct dig_vec2 moment_kgm;   // mass times distance from the file's centre, the link's frame
     double          inertia_kgm2; // about the centre of mass of all
 };
 
@@ -41,12 +41,14 @@ struct dig_correction {
     struct dig_friction   friction[DIG_JOINTS];
     double                offset_Pa[DIG_JOINTS][DIG_CHAMBERS];
     double                gain[DIG_JOINTS][DIG_CHAMBERS];
-    struct dig_added_mass bucket;  // of the bucket itself: every dig
-    struct dig_added_mass payload; // carried over from the dig before: this dig only
+    struct dig_added_mass link[DIG_JOINTS]; // of the links themselves: every dig
+    struct dig_added_mass payload;          // carried over from the dig before: this dig only
     // Geometry: added to the file's lengths and places.
     double          rocker_m, link_m;
     struct dig_vec2 rocker_pin_m, ear_m;
     struct dig_vec2 base_m[DIG_JOINTS], eye_m[DIG_JOINTS]; // eye: boom and arm only
+    double          angle_rad[DIG_JOINTS]; // that the sensor reads more than the joint's angle
+    double          level_rad;             // that the machine is pitched more than it says
     double          delay_s; // by which pressures are later than the angles beside them
 };
 
@@ -59,7 +61,7 @@ bool dig_correction_is_none(const struct dig_correction *correction);
 DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    *machine,
                                                     const struct dig_correction *correction);
 
-/// The machine with its geometry and its bucket corrected; a payload is part of its bucket.
+/// The machine with its geometry and its links corrected; a payload is part of its bucket.
 struct dig_machine dig_correction_machine(const struct dig_machine    *machine,
                                           const struct dig_correction *correction);
 

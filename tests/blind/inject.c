@@ -13,8 +13,8 @@ const char *blind_machine_effect_name(const enum blind_machine_effect effect)
 {
     static const char *const name[BLIND_MACHINE_EFFECTS] = {
         "cylinder_friction", "pressure_offset", "bucket_weight", "bucket_inertia", "payload",
-        "linkage_geometry",  "sensor_delay",    "swing_ripple",  "sensor_drift",   "thermal_gain",
-        "hose_lag",          "cross_talk",      "angle_warp",
+        "linkage_geometry",  "angle_offset",    "sensor_delay",  "swing_ripple",   "sensor_drift",
+        "thermal_gain",      "hose_lag",        "cross_talk",    "angle_warp",
     };
     return name[effect];
 }
@@ -27,6 +27,7 @@ static const double size_of[BLIND_MACHINE_EFFECTS][BLIND_STRENGTHS] = {
     [BLIND_BUCKET_INERTIA]    = { 80.0, 250.0, 800.0 },     // kg m2
     [BLIND_PAYLOAD]           = { 2.0, 15.0, 120.0 },       // kg
     [BLIND_LINKAGE_GEOMETRY]  = { 0.015, 0.05, 0.12 },      // share of a length
+    [BLIND_ANGLE_OFFSET]      = { 0.003, 0.015, 0.06 },     // rad, of any joint
     [BLIND_SENSOR_DELAY]      = { 0.015, 0.05, 0.15 },      // s
     [BLIND_SWING_RIPPLE]      = { 6.0e3, 6.0e4, 6.0e5 },    // Pa
     [BLIND_SENSOR_DRIFT]      = { 50.0, 500.0, 5000.0 },    // Pa/s
@@ -46,8 +47,8 @@ struct blind_fault blind_fault_draw(struct blind_draw *const        draw,
     }
     f.p[0] = size_of[effect][strength] * exp(blind_between(draw, -0.6, 0.6));
     if (effect == BLIND_PRESSURE_OFFSET || effect == BLIND_LINKAGE_GEOMETRY ||
-        effect == BLIND_CROSS_TALK || effect == BLIND_ANGLE_WARP || effect == BLIND_BUCKET_WEIGHT ||
-        effect == BLIND_THERMAL_GAIN) {
+        effect == BLIND_CROSS_TALK || effect == BLIND_ANGLE_WARP || effect == BLIND_ANGLE_OFFSET ||
+        effect == BLIND_BUCKET_WEIGHT || effect == BLIND_THERMAL_GAIN) {
         f.p[0] *= blind_sign(draw);
     }
     return f;
@@ -342,6 +343,9 @@ static void read_faults(const struct blind_fault *const f, const struct blind_pl
         }
         break;
     case BLIND_CROSS_TALK: p[4] += f->p[0] * p[3]; break;
+    case BLIND_ANGLE_OFFSET:
+        sample->value[DIG_SIGNAL_BOOM_rad + (int)(3.0 * f->p[1])] += f->p[0];
+        break;
     case BLIND_ANGLE_WARP:
         sample->value[DIG_SIGNAL_BUCKET_rad] +=
             f->p[0] * sin(2.0 * sample->value[DIG_SIGNAL_BUCKET_rad] + 6.0 * f->p[1]);

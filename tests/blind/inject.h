@@ -20,6 +20,7 @@ enum blind_machine_effect {
     BLIND_BUCKET_INERTIA,
     BLIND_PAYLOAD,
     BLIND_LINKAGE_GEOMETRY,
+    BLIND_ANGLE_OFFSET,
     BLIND_SENSOR_DELAY,
     BLIND_MACHINE_LISTED,
     // Outside of it.

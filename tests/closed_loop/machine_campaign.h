@@ -56,15 +56,17 @@ static inline int tear_down(void **state)
 
 // What the machine does that its file does not say.
 struct fault {
-    double dry_N;       // the bucket cylinder's seal, against its motion
-    double held_N;      // seals of all drives that bend .2 mm before they slip, and stay bent
-    double rod_Pa;      // the bucket's rod side sensor reads so much more
-    double gain;        // the bucket's head side sensor reads 1 + this times what is there
-    double late_s;      // pressures are so old
-    double payload_kg;  // in the middle of the bucket, from the second dig on
-    bool   falls_out;   // before the second
-    bool   was_there;   // in the first already, twice as much
-    double wandering_N; // of all drives, by a slow sine: nothing the catalogue holds
+    double dry_N;  // the bucket cylinder's seal, against its motion
+    double held_N; // seals of all drives that bend .2 mm before they slip, and stay bent
+    double rod_Pa; // the bucket's rod side sensor reads so much more
+    double gain;   // the bucket's head side sensor reads 1 + this times what is there
+    double late_s; // pressures are so old
+    double heavier_kg[DIG_JOINTS]; // a link, in its centre of mass
+    double angle_rad[DIG_JOINTS];  // its sensor reads so much more
+    double payload_kg;             // in the middle of the bucket, from the second dig on
+    bool   falls_out;              // before the second
+    bool   was_there;              // in the first already, twice as much
+    double wandering_N;            // of all drives, by a slow sine: nothing the catalogue holds
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
     double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
     double lost;       // readings do not arrive whose luck is worse than so many sigmas; 0: all do
@@ -113,18 +115,31 @@ static inline void bend(const struct dig_rig_track *const t, const size_t i,
     }
 }
 
-static inline double payload_N(const struct dig_rig_row *const row, const int j, const double kg)
+static inline struct dig_vec2 com_m(const struct dig_rig_joints *const joints, const int link)
 {
-    // The work of its weight over a small turn of the joint.
-    double high[2], lever_m;
-    for (int way = 0; way < 2; way++) {
-        struct dig_rig_joints at = row->joints;
-        at.rad[j] += way == 0 ? -1e-5 : 1e-5;
-        high[way] = dig_rig_front_at(&machine, &at).com_m[DIG_JOINT_BUCKET].y;
-    }
-    assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
-                     DIG_OK);
-    return kg * 9.81 * (high[1] - high[0]) / 2e-5 / lever_m;
+    return dig_rig_front_at(&machine, joints).com_m[link];
+}
+
+// What a mass in a link's centre asks of a drive: the work of its weight and of its inertia over a
+// small turn of the joint.
+static inline double weight_N(const struct dig_rig_track *const t, const size_t i, const int j,
+                              const int link, const double kg)
+{
+    const size_t          before = i > 0 ? i - 1 : i, after = i + 1 < t->rows ? i + 1 : i;
+    const struct dig_vec2 was  = com_m(&t->row[before].joints, link);
+    const struct dig_vec2 is   = com_m(&t->row[i].joints, link);
+    const struct dig_vec2 be   = com_m(&t->row[after].joints, link);
+    const double          s2   = t->step_s * t->step_s;
+    struct dig_rig_joints less = t->row[i].joints, more = t->row[i].joints;
+    double                lever_m;
+    less.rad[j] -= 1e-5;
+    more.rad[j] += 1e-5;
+    const struct dig_vec2 by = dig_vec2_sub(com_m(&more, link), com_m(&less, link));
+    assert_int_equal(
+        dig_rig_lever_m(&machine, (enum dig_joint)j, t->row[i].joints.rad[j], &lever_m), DIG_OK);
+    const double work_J = kg * ((be.x - 2.0 * is.x + was.x) / s2 * by.x +
+                                (9.81 + (be.y - 2.0 * is.y + was.y) / s2) * by.y);
+    return work_J / 2e-5 / lever_m;
 }
 
 static inline void lose(struct dig_sample *const sample, const enum dig_signal signal)
@@ -197,7 +212,10 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
         for (int j = 0; j < DIG_JOINTS; j++) {
             push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
             const double time_s = t->step_s * (double)then + 40.0 * (double)order;
-            push_more(&row, j, payload_N(&row, j, carried_kg(fault, order)));
+            push_more(&row, j, weight_N(t, then, j, DIG_JOINT_BUCKET, carried_kg(fault, order)));
+            for (int link = j; link < DIG_JOINTS; link++) {
+                push_more(&row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
+            }
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
@@ -215,6 +233,9 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
             row.pressures.rod_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
         }
         row.joints = t->row[i].joints;
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            row.joints.rad[j] += fault->angle_rad[j];
+        }
         r.row[i] = dig_rig_sense(&machine, &row, llround((double)i * t->step_s * 1e9) + 1, &noise);
         dig_rig_quantise(&machine, &r.row[i]);
         r.row[i].value[DIG_SIGNAL_TEMPERATURE_degC] = 45.0 + above_degC;

@@ -56,7 +56,7 @@ TEST(what_differs_in_speed_alone_is_told_by_moving_that_joint_fast)
 
 TEST(what_a_turning_bucket_alone_feels_is_told_by_turning_it_fast)
 {
-    const struct dig_correction heavy = { .bucket = { .inertia_kgm2 = 500.0 } };
+    const struct dig_correction heavy = { .link[DIG_JOINT_BUCKET] = { .inertia_kgm2 = 500.0 } };
     assert_true(best(&heavy, &nothing).fast);
     // Inertia asks for acceleration, which goes with the square of the speed.
     assert_close(sigmas(DIG_JOINT_BUCKET, true, &heavy, &nothing) /
@@ -105,7 +105,7 @@ TEST(a_linkage_that_looks_like_an_offset_is_told_by_turning_the_bucket)
 
 TEST(what_is_the_same_is_told_by_nothing)
 {
-    const struct dig_correction heavy = { .bucket = { .mass_kg = 100.0 } };
+    const struct dig_correction heavy = { .link[DIG_JOINT_BUCKET] = { .mass_kg = 100.0 } };
     struct dig_motion           motion;
     double                      told = -1.0;
     assert_close(sigmas(DIG_JOINT_ARM, true, &heavy, &heavy), 0.0, 0.0);

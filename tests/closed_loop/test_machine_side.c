@@ -58,11 +58,11 @@ static void expect_found(const struct campaign *const c, const enum dig_effect_i
     assert_null(parameter);
 }
 
-// Leaves in the digs what was found.
-static void take_off(struct campaign *const c)
+// Leaves in the digs what was found, and what the file has wrong (NULL: nothing).
+static void take_off_with(struct campaign *const c, const double file[DIG_FILE_ERRORS])
 {
     double added[DIGS][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    assert_int_equal(dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect,
+    assert_int_equal(dig_machine_side_apply(c->side, c->finding.effects, c->finding.effect, file,
                                             DIG_APPLY_TO_ALL, c->measured, added),
                      DIG_OK);
     for (size_t d = 0; d < DIGS; d++) {
@@ -70,20 +70,31 @@ static void take_off(struct campaign *const c)
     }
 }
 
-// rms over digs of My by two tellings of it, rig scale.
-static double apart(const struct campaign *const a, const struct campaign *const b,
-                    const bool corrected)
+static void take_off(struct campaign *const c)
+{
+    take_off_with(c, NULL);
+}
+
+// rms over digs of a channel by two tellings of it, rig scale.
+static double apart_in(const enum dig_channel channel, const struct campaign *const a,
+                       const struct campaign *const b, const bool corrected)
 {
     double sum = 0.0, whole = 0.0;
     for (int d = 0; d < DIGS; d++) {
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double of =
-                a->measured[d].value[0][k] - (corrected ? a->measured[d].machine[0][k] : 0.0);
-            sum += pow(of - b->measured[d].value[0][k], 2.0);
-            whole += pow(b->measured[d].value[0][k], 2.0);
+            const double of = a->measured[d].value[channel][k] -
+                              (corrected ? a->measured[d].machine[channel][k] : 0.0);
+            sum += pow(of - b->measured[d].value[channel][k], 2.0);
+            whole += pow(b->measured[d].value[channel][k], 2.0);
         }
     }
     return sqrt(sum / whole);
+}
+
+static double apart(const struct campaign *const a, const struct campaign *const b,
+                    const bool corrected)
+{
+    return apart_in(DIG_CHANNEL_MY_Nm, a, b, corrected);
 }
 
 TEST(each_effect_is_named_and_taken_off_the_digs)
@@ -99,6 +110,7 @@ TEST(each_effect_is_named_and_taken_off_the_digs)
         { { .rod_Pa = 4e5 }, DIG_EFFECT_PRESSURE_OFFSET, NULL, 0.0 },
         { { .late_s = 0.2 }, DIG_EFFECT_SENSOR_DELAY, "delay_s", 0.2 },
         { { .payload_kg = 90.0 }, DIG_EFFECT_PAYLOAD, "payload_kg", 90.0 },
+        { { .angle_rad = { 0.0, 0.08, 0.0 } }, DIG_EFFECT_ANGLE_OFFSET, "arm_rad", 0.08 },
     };
     const struct fault     none  = { .dry_N = 0.0 };
     struct campaign *const clean = trace(&none, 9);
@@ -113,6 +125,28 @@ TEST(each_effect_is_named_and_taken_off_the_digs)
         assert_true(after < 0.5 * before + 0.004);
         end(c);
     }
+    end(clean);
+}
+
+// Boom and arm as much heavier as their file allows: nothing to name, but the digs' forces are told
+// with it.
+TEST(a_machine_within_its_files_tolerance_is_no_effect)
+{
+    const struct fault none  = { .dry_N = 0.0 };
+    const struct fault heavy = {
+        .heavier_kg = { 1.5 * machine.tolerance.mass_share * machine.link[0].mass_kg,
+                        machine.tolerance.mass_share * machine.link[1].mass_kg, 0.0 }
+    };
+    struct campaign *const clean = trace(&none, 9);
+    struct campaign *const c     = trace(&heavy, 9);
+    assert_false(c->finding.significant);
+    assert_int_equal(c->finding.effects, 0);
+    const double before = apart_in(DIG_CHANNEL_FZ_N, c, clean, false);
+    take_off_with(c, c->finding.none.file);
+    const double after = apart_in(DIG_CHANNEL_FZ_N, c, clean, true);
+    print_message("Fz: %.4f off before, %.4f after\n", before, after);
+    assert_true(before > 0.01 && after < 0.3 * before);
+    end(c);
     end(clean);
 }
 

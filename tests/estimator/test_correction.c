@@ -81,14 +81,14 @@ TEST(another_bucket_payload_and_linkage_are_taken_off)
 {
     const struct dig_machine    file = model_machine();
     const struct dig_correction c    = {
-           .bucket       = { 40.0, { 12.0, -5.0 }, 3.0 },
-           .payload      = { 60.0, { 4.0, 2.0 }, 0.0 },
-           .rocker_m     = 0.01,
-           .link_m       = -0.008,
-           .ear_m        = { 0.004, -0.006 },
-           .rocker_pin_m = { -0.005, 0.003 },
-           .base_m       = { { 0.01, 0.0 }, { 0.0, 0.02 }, { -0.01, 0.01 } },
-           .eye_m        = { { 0.0, 0.01 }, { -0.01, 0.0 }, { 0.0, 0.0 } },
+           .link[DIG_JOINT_BUCKET] = { 40.0, { 12.0, -5.0 }, 3.0 },
+           .payload                = { 60.0, { 4.0, 2.0 }, 0.0 },
+           .rocker_m               = 0.01,
+           .link_m                 = -0.008,
+           .ear_m                  = { 0.004, -0.006 },
+           .rocker_pin_m           = { -0.005, 0.003 },
+           .base_m                 = { { 0.01, 0.0 }, { 0.0, 0.02 }, { -0.01, 0.01 } },
+           .eye_m                  = { { 0.0, 0.01 }, { -0.01, 0.0 }, { 0.0, 0.0 } },
     };
     // The true machine, put together here: first moments add up.
     struct dig_machine     truth  = file;
@@ -250,7 +250,7 @@ TEST(what_cannot_be_is_refused)
     assert_int_equal(dig_correction_check(&machine, &c), DIG_EINVAL);
     c = (struct dig_correction){ .gain = { { -1.0 } } };
     assert_int_equal(dig_correction_check(&machine, &c), DIG_EINVAL);
-    c = (struct dig_correction){ .bucket = { .mass_kg = -1e5 } };
+    c = (struct dig_correction){ .link[DIG_JOINT_BUCKET] = { .mass_kg = -1e5 } };
     assert_int_equal(dig_correction_check(&machine, &c), DIG_EINVAL);
     c = (struct dig_correction){ .rocker_m = 5.0 };
     assert_int_equal(dig_correction_check(&machine, &c), DIG_EUNREACHABLE);

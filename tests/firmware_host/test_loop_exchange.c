@@ -92,7 +92,7 @@ static void offer_machine(struct bench *const b, const struct dig_correction *co
 TEST(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start)
 {
     struct bench *const         b     = bench_create();
-    const struct dig_correction heavy = { .bucket = { .mass_kg = 250.0 } };
+    const struct dig_correction heavy = { .link[DIG_JOINT_BUCKET] = { .mass_kg = 250.0 } };
     int64_t                     at_ms = 1000;
 
     // In a dig the machine stays as it is; push_Pa makes the moment of another sample.
