@@ -184,10 +184,10 @@ static void join(struct dig_machine_search *const s, const unsigned first)
 static void begin_again(struct dig_machine_search *const s)
 {
     memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
     s->slow  = dig_lines_judge(&s->fit.lines);
     s->rest2 = s->rest2_none;
+    dig_lines_update(&s->fit.lines, all_columns);
+    dig_fit_sum(&s->fit, NULL, NULL);
 }
 
 // The one of the set that explains most alone.
@@ -213,12 +213,15 @@ static void select_effects(struct dig_machine_search *const s)
     s->rest2             = s->rest2_none;
     const unsigned first = dig_fit_select(&s->fit, s->least, 0);
     // Where one leads, the others may not be needed: they explain what its slope there does not.
-    // But alone it may take a strong effect for its own, and then stays there.
-    const unsigned leads = leader_of(s, first);
+    // But alone it may take what is another's for its own, and then stays there.
+    unsigned others = first;
+    unsigned leads  = leader_of(s, first);
     join(s, leads);
-    if (first != leads && is_unclear(s)) {
+    while (others != 0 && first != leads && is_unclear(s)) {
+        others &= ~leads;
         begin_again(s);
-        join(s, first);
+        leads = others != 0 ? leader_of(s, others) : first;
+        join(s, leads);
     }
 }
 
@@ -241,12 +244,21 @@ static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
     dig_fit_sum(&s->fit, NULL, NULL);
 }
 
+// The log evidence of the set and of what the file has wrong, against a machine as filed: of what
+// that leaves in truth, which is not where the lines lead from here.
+static double evidence_of_all(const struct dig_machine_search *const s)
+{
+    const double left2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.absent);
+    return s->fit.log_none + dig_fit_evidence(&s->fit, s->set) +
+           0.5 * (left2 - s->fit.rest2) / s->fit.s2;
+}
+
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
 static void doubt_names(struct dig_machine_search *const s)
 {
     s->drift = dig_machine_drift_ask(&s->fit.lines, s->fit.s2);
     if (s->set == 0 || !(s->drift.log_lead > DIG_MACHINE_TIE) ||
-        s->drift.log_evidence < s->fit.log_none + dig_fit_evidence(&s->fit, s->set)) {
+        s->drift.log_evidence < evidence_of_all(s)) {
         s->drift.follows = NULL;
     }
 }
