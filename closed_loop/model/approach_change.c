@@ -58,16 +58,31 @@ static struct dig_gravel within_grid(const struct dig_curve_set *const set,
     return within;
 }
 
-// The same of the gravel's own cell; false where the table has none.
-static bool add_change_of(const struct dig_curve_set *const set,
-                          const struct dig_curve_set *const at, const size_t trajectory,
-                          const struct dig_gravel *const gravel, double sum[DIG_FEATURES])
+// The shallowest and the deepest dig of a trajectory; those that follow are as given.
+static void set_ends(const size_t trajectory, const struct dig_depths *const depths,
+                     const struct dig_cell *const only, struct dig_approached_slot slot[SLOTS])
 {
-    const struct dig_gravel within = within_grid(set, gravel);
-    struct dig_cell         plain;
-    struct dig_cell         cell[SLOTS];
-    if (dig_cell_find(set, &within, trajectory, &plain) != DIG_OK ||
-        dig_cell_find(at, &within, SHALLOWEST, &cell[SHALLOWEST]) != DIG_OK ||
+    slot[SHALLOWEST] =
+        (struct dig_approached_slot){ trajectory, { depths->least, 0.0 }, 1.0, only };
+    slot[DEEPEST] = (struct dig_approached_slot){ trajectory, { depths->most, 0.0 }, 1.0, only };
+}
+
+// The same of the gravel's own cell; false where the table has none.
+static bool add_change_of(const struct dig_curve_set *const set, const size_t trajectory,
+                          const struct dig_depths *const depths,
+                          const struct dig_gravel *const gravel, void *const memory,
+                          double sum[DIG_FEATURES])
+{
+    const struct dig_gravel    within = within_grid(set, gravel);
+    struct dig_approached_slot slot[SLOTS];
+    struct dig_cell            plain;
+    struct dig_cell            cell[SLOTS];
+    if (dig_cell_find(set, &within, trajectory, &plain) != DIG_OK) {
+        return false;
+    }
+    set_ends(trajectory, depths, &plain, slot);
+    const struct dig_curve_set *const at = dig_approached_make(set, SLOTS, slot, no_error, memory);
+    if (dig_cell_find(at, &within, SHALLOWEST, &cell[SHALLOWEST]) != DIG_OK ||
         dig_cell_find(at, &within, DEEPEST, &cell[DEEPEST]) != DIG_OK) {
         return false;
     }
@@ -76,11 +91,14 @@ static bool add_change_of(const struct dig_curve_set *const set,
 }
 
 // Mean over the entries that have all three.
-static void add_mean_change(const struct dig_curve_set *const set,
-                            const struct dig_curve_set *const at, const size_t trajectory,
+static void add_mean_change(const struct dig_curve_set *const set, const size_t trajectory,
+                            const struct dig_depths *const depths, void *const memory,
                             double sum[DIG_FEATURES])
 {
-    double entries = 0.0;
+    struct dig_approached_slot ends[SLOTS];
+    double                     entries = 0.0;
+    set_ends(trajectory, depths, NULL, ends);
+    const struct dig_curve_set *const at = dig_approached_make(set, SLOTS, ends, no_error, memory);
     for (size_t e = 0; e < set->entries; e++) {
         const size_t slot = e * set->trajectories + trajectory;
         if (set->packings[slot] > 0 && at->packings[e * SLOTS + SHALLOWEST] > 0 &&
@@ -110,13 +128,8 @@ enum dig_status dig_depth_change(const struct dig_curve_set *const set, const si
     if (memory == NULL) {
         return DIG_ENOMEM;
     }
-    const struct dig_approached_slot slot[SLOTS] = {
-        [SHALLOWEST] = { trajectory, { depths.least, 0.0 }, 1.0 },
-        [DEEPEST]    = { trajectory, { depths.most, 0.0 }, 1.0 },
-    };
-    const struct dig_curve_set *const at = dig_approached_make(set, SLOTS, slot, no_error, memory);
-    if (gravel == NULL || !add_change_of(set, at, trajectory, gravel, change)) {
-        add_mean_change(set, at, trajectory, change);
+    if (gravel == NULL || !add_change_of(set, trajectory, &depths, gravel, memory, change)) {
+        add_mean_change(set, trajectory, &depths, memory, change);
     }
     free(memory);
     // 1 sigma of what is as likely everywhere between two ends.
@@ -184,24 +197,26 @@ enum dig_status dig_approach_added(const struct dig_curve_set *const set, const 
     if (!dig_approach_varies(set, trajectory)) {
         return DIG_OK;
     }
+    const struct dig_gravel within = within_grid(set, gravel);
+    struct dig_cell         plain;
+    if (dig_cell_find(set, &within, trajectory, &plain) != DIG_OK) {
+        return DIG_OK;
+    }
     void *const memory = malloc(dig_approached_size(set, SLOTS + 1));
     if (memory == NULL) {
         return DIG_ENOMEM;
     }
-    const struct dig_depths    depths          = dig_approach_depths(set, trajectory);
-    const double               range           = depths.most - depths.least;
-    struct dig_approached_slot slot[SLOTS + 1] = {
-        [SHALLOWEST] = { trajectory, { depths.least, 0.0 }, 1.0 },
-        [DEEPEST]    = { trajectory, { depths.most, 0.0 }, 1.0 },
-        [MADE]       = { .trajectory = trajectory, .over_depth = 1.0 },
-    };
+    const struct dig_depths    depths = dig_approach_depths(set, trajectory);
+    const double               range  = depths.most - depths.least;
+    struct dig_approached_slot slot[SLOTS + 1];
+    set_ends(trajectory, &depths, &plain, slot);
+    slot[MADE] =
+        (struct dig_approached_slot){ .trajectory = trajectory, .over_depth = 1.0, .only = &plain };
     (void)dig_approach_clamp(set, trajectory, approach, &slot[MADE].approach);
     const struct dig_curve_set *const at =
         dig_approached_make(set, SLOTS + 1, slot, no_error, memory);
-    const struct dig_gravel within = within_grid(set, gravel);
-    struct dig_cell         plain;
-    struct dig_cell         cell[SLOTS + 1];
-    enum dig_status         status = dig_cell_find(set, &within, trajectory, &plain);
+    struct dig_cell cell[SLOTS + 1];
+    enum dig_status status = DIG_OK;
     for (size_t i = 0; i <= SLOTS && status == DIG_OK; i++) {
         status = dig_cell_find(at, &within, i, &cell[i]);
     }

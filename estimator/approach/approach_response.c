@@ -112,21 +112,21 @@ bool dig_response_borrowed(const struct dig_curve_set *const set, const size_t e
                            const struct dig_response *const own[],
                            struct dig_response *const       response)
 {
-    const struct dig_approach plain = dig_approach_plain();
-    struct dig_response       made;
-    struct dig_response       one;
-    double                    whole = 0.0;
-    if (!dig_response_own(set, entry, trajectory, &plain, &plain, &one)) {
+    assert(set != NULL && approach != NULL && response != NULL);
+    const size_t                  slot   = entry * set->trajectories + trajectory;
+    const struct dig_curve *const itself = &set->curve[slot];
+    struct dig_response           one;
+    double                        whole = 0.0;
+    if (set->packings[slot] <= 0) {
         return false;
     }
     // Its own plain curve, at the times of the trajectory dug so.
-    made = (struct dig_response){ .inverse_packings = one.inverse_packings };
-    const struct dig_trajectory   dug    = dig_response_trajectory(set, trajectory, approach);
-    const struct dig_curve *const itself = &set->curve[entry * set->trajectories + trajectory];
-    double                        place[DIG_CURVE_POINTS];
+    struct dig_response         made = { .inverse_packings = 1.0 / (double)set->packings[slot] };
+    const struct dig_trajectory dug  = dig_response_trajectory(set, trajectory, approach);
+    double                      place[DIG_CURVE_POINTS];
     warp(&dug, &set->trajectory[trajectory], set->tooth_m, place);
     for (int c = 0; c < DIG_CHANNELS; c++) {
-        made.rms[c] = one.rms[c];
+        made.rms[c] = sqrt(dig_curve_mean_square(itself->mean[c]));
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             made.plain[c][k] = dig_curve_at(itself->mean[c], place[k]);
         }

@@ -4,6 +4,7 @@
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_response.h"
 #include "estimator/approach/approaches.h"
+#include "estimator/approach/interpolate.h"
 #include "estimator/approach/laid.h"
 
 #include <assert.h>
@@ -159,6 +160,15 @@ static void fill_plain(const struct dig_curve_set *const set, const size_t traje
     *curve          = set->curve[at];
 }
 
+static bool is_wanted(const struct dig_cell *const only, const struct dig_curve *const curve)
+{
+    bool wanted = only == NULL;
+    for (size_t i = 0; !wanted && i < only->corners; i++) {
+        wanted = only->curve[i] == curve;
+    }
+    return wanted;
+}
+
 // The curves of one slot, each the s-th of its entry.
 static void fill_slot(const struct dig_curve_set *const       set,
                       const struct dig_approached_slot *const slot,
@@ -176,7 +186,13 @@ static void fill_slot(const struct dig_curve_set *const       set,
         respond(set, slot, response, own);
     }
     for (size_t e = 0; e < set->entries; e++) {
-        const size_t at = e * made->trajectories + s;
+        const size_t                  at = e * made->trajectories + s;
+        const struct dig_curve *const of = &set->curve[e * set->trajectories + slot->trajectory];
+        if (!is_wanted(slot->only, of)) {
+            made->packings[at] = 0;
+            made->curve[at]    = *of;
+            continue;
+        }
         if (plain) {
             fill_plain(set, slot->trajectory, e, &made->packings[at], &made->curve[at]);
         } else {

@@ -16,12 +16,16 @@
 
 #include <stddef.h>
 
+struct dig_cell; // estimator/approach/interpolate.h
+
 /// One trajectory of the table made: one of the set's, dug so.
 struct dig_approached_slot {
     size_t              trajectory;
     struct dig_approach approach;   // in the hull: dig_approach_clamp()
     double              over_depth; // its curves are laid over the path at this depth
                                     // (estimator/approach/laid.h); 0: over their own
+    const struct dig_cell *only; // of the set along the trajectory: its entries alone are made, the
+                                 // others lack the slot; NULL: all are
 };
 
 /// Bytes of the memory dig_approached_make() wants: 8 kB an entry and slot, 17 kB an entry dug at

@@ -8,9 +8,10 @@ static const double edge = 1e-9;
 double dig_curve_at(const float y[const DIG_CURVE_POINTS], const double place)
 {
     assert(y != NULL);
-    const double at = fmin(fmax(place, 0.0), DIG_CURVE_POINTS - 1);
-    const size_t k  = (size_t)fmin(floor(at), DIG_CURVE_POINTS - 2);
-    const double f  = at - (double)k;
+    const double last = DIG_CURVE_POINTS - 1;
+    const double at   = !(place > 0.0) ? 0.0 : place < last ? place : last;
+    const size_t k    = at < last ? (size_t)at : DIG_CURVE_POINTS - 2;
+    const double f    = at - (double)k;
     return (1.0 - f) * (double)y[k] + f * (double)y[k + 1];
 }
 

@@ -58,7 +58,7 @@ static void look_at_all(const struct dig_curve_set *const set,
     alone.trajectory = 0;
     dig_pool_sum(1, &alone, &sums);
     for (size_t i = 0; i < LOOKS; i++) {
-        const struct dig_approached_slot slot = { t, look[i].approach, dig->approach.depth };
+        const struct dig_approached_slot slot = { t, look[i].approach, dig->approach.depth, NULL };
         look[i].evidence                      = look[i].away_m <= least_m + as_near * set->tooth_m
                                                     ? evidence_at(set, error, &slot, memory, &sums)
                                                     : -(double)INFINITY;

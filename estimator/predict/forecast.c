@@ -50,7 +50,7 @@ void dig_forecast_as_dug(const struct dig_curve_set *const set, const double lam
                          struct dig_expected *const expected)
 {
     assert(set != NULL && match != NULL && approach != NULL && expected != NULL);
-    const struct dig_approached_slot  slot = { trajectory, *approach, 0.0 };
+    const struct dig_approached_slot  slot = { trajectory, *approach, 0.0, NULL };
     const struct dig_curve_set *const dug  = dig_approached_make(set, 1, &slot, error, memory);
     expected->approach                     = *approach;
     expect(dug, lambda, match, 0, expected);

@@ -42,7 +42,7 @@ static void *memory;
 static const struct dig_curve_set *make(const size_t trajectory, const double depth,
                                         const double attack_deg)
 {
-    const struct dig_approached_slot slot = { trajectory, { depth, attack_deg * DEG }, 0.0 };
+    const struct dig_approached_slot slot = { trajectory, { depth, attack_deg * DEG }, 0.0, NULL };
     free(memory);
     memory = malloc(dig_approached_size(&table.cube.set, 1));
     assert_non_null(memory);
@@ -231,6 +231,27 @@ TEST(outside_the_hull_the_nearest_place_in_it_counts)
     assert_true(dig_approach_is_plain(&nearest));
 }
 
+TEST(of_a_cell_its_entries_alone_are_made_bit_by_bit)
+{
+    approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
+    const struct dig_curve_set *const set    = &table.cube.set;
+    struct dig_gravel                 gravel = table.cube.gravel[5];
+    struct dig_cell                   cell;
+    gravel.value[DIG_AXIS_DENSITY_kgpm3] = 2000.0; // between the fifth and the sixth
+    assert_int_equal(dig_cell_find(set, &gravel, 1, &cell), DIG_OK);
+    const struct dig_approached_slot slot[] = { { 1, { 1.1, 0.0 }, 1.0, NULL },
+                                                { 1, { 1.1, 0.0 }, 1.0, &cell } };
+    free(memory);
+    memory                                 = malloc(dig_approached_size(set, 2));
+    const struct dig_curve_set *const made = dig_approached_make(set, 2, slot, NULL, memory);
+    for (size_t e = 0; e < CUBE_GRAVELS; e++) {
+        const bool is_of_it = e == 4 || e == 5;
+        assert_int_equal(made->packings[2 * e + 1], is_of_it ? made->packings[2 * e] : 0);
+        assert_true(!is_of_it || memcmp(&made->curve[2 * e], &made->curve[2 * e + 1],
+                                        sizeof made->curve[0]) == 0);
+    }
+}
+
 TEST(a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth)
 {
     approach_table_init(&table, CUBE_GRAVELS, 4, cross, approach_growing, 0.05, 3);
@@ -242,7 +263,8 @@ TEST(a_deeper_dig_is_matched_and_predicted_by_the_table_of_its_depth)
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         seen.moment_Nm[k] = (double)truth.mean[0][k];
     }
-    const struct dig_approached_slot slot[] = { { 0, approach, 0.0 }, { 1, approach, 0.0 } };
+    const struct dig_approached_slot slot[] = { { 0, approach, 0.0, NULL },
+                                                { 1, approach, 0.0, NULL } };
     free(memory);
     memory = malloc(dig_approached_size(&table.cube.set, 2));
     const struct dig_curve_set *const made =

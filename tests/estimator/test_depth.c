@@ -132,7 +132,7 @@ static double likeliest(const struct dig_observation *const dig)
     dig_approach_error_measure(set, 0, &error[0]);
     dig_pool_sum(1, dig, &sums);
     for (int i = 0; i <= 80; i++) {
-        const struct dig_approached_slot slot     = { 0, { 0.8 + 0.005 * i, 0.0 }, over };
+        const struct dig_approached_slot slot     = { 0, { 0.8 + 0.005 * i, 0.0 }, over, NULL };
         const double                     evidence = dig_likelihood_evidence(
                                 dig_approached_make(set, 1, &slot, error, memory), &sums.group[0]);
         best = evidence > most ? 0.8 + 0.005 * i : best;
