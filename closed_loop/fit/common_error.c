@@ -13,28 +13,39 @@
 static const double alike_bins[DIG_COMMON_ERROR_PARTS] = { 2.5, 2.5, 0.7, 2.5 };
 static const double alike_channels                     = 0.7;
 
-// R of a part between two features that lie so many bins apart on one channel. The ridge keeps it
-// positive definite.
+enum { APART = 2 * DIG_FEATURE_BINS - 1 };
+
+// R of a part between two features of one channel and of two, by how many bins the second lies
+// behind the first, from as many before it on.
 struct likeness {
-    double along[DIG_FEATURE_BINS];
+    double same[APART], other[APART];
 };
 
 static struct likeness likeness_of(const size_t part)
 {
     struct likeness r;
-    for (size_t apart = 0; apart < DIG_FEATURE_BINS; apart++) {
-        r.along[apart] = exp(-0.5 * pow((double)apart / alike_bins[part], 2.0));
+    for (size_t i = 0; i < DIG_FEATURE_BINS; i++) {
+        const double alike                = exp(-0.5 * pow((double)i / alike_bins[part], 2.0));
+        const size_t behind               = DIG_FEATURE_BINS - 1 + i;
+        r.same[behind]                    = alike;
+        r.same[DIG_FEATURE_BINS - 1 - i]  = alike;
+        r.other[behind]                   = alike_channels * alike;
+        r.other[DIG_FEATURE_BINS - 1 - i] = alike_channels * alike;
     }
     return r;
 }
 
-static double likeness(const struct likeness *const r, const size_t a, const size_t b)
+// R between one feature and all. The ridge keeps it positive definite.
+static void fill_likeness(const struct likeness *const r, const size_t feature,
+                          double row[DIG_FEATURES])
 {
     static const double ridge = 1e-6;
-    const size_t        i     = a % DIG_FEATURE_BINS;
-    const size_t        j     = b % DIG_FEATURE_BINS;
-    const bool          same  = a / DIG_FEATURE_BINS == b / DIG_FEATURE_BINS;
-    return (same ? 1.0 : alike_channels) * r->along[i > j ? i - j : j - i] + (a == b ? ridge : 0.0);
+    const size_t        from  = DIG_FEATURE_BINS - 1 - feature % DIG_FEATURE_BINS;
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        const double *const of = c == feature / DIG_FEATURE_BINS ? r->same : r->other;
+        memcpy(&row[c * DIG_FEATURE_BINS], &of[from], DIG_FEATURE_BINS * sizeof row[0]);
+    }
+    row[feature] += ridge;
 }
 
 // True where a part has no size at all: what has no name in a hypothesis of effects, say.
@@ -48,59 +59,81 @@ static bool is_none(const double size[DIG_FEATURES])
 }
 
 // The smooth part's covariance, units of the table.
-static void smooth_part(const struct dig_whitened_digs_group *const group,
-                        const struct dig_common_error *const error, double k[])
+static inline void add_parts(const struct dig_common_error *const error,
+                             double                               k[DIG_FEATURES][DIG_FEATURES])
 {
-    const size_t n = group->features;
-    memset(k, 0, n * n * sizeof k[0]);
     for (size_t p = 0; p < DIG_COMMON_ERROR_PARTS; p++) {
+        const double *const size = error->size[p];
+        if (is_none(size)) {
+            continue;
+        }
         const struct likeness r = likeness_of(p);
-        for (size_t i = 0; i < n && !is_none(error->size[p]); i++) {
-            for (size_t j = 0; j <= i; j++) {
-                const size_t a = group->feature[i];
-                const size_t b = group->feature[j];
-                k[i * n + j] += error->size[p][a] * error->size[p][b] * likeness(&r, a, b);
-                k[j * n + i] = k[i * n + j];
+        for (size_t a = 0; a < DIG_FEATURES; a++) {
+            double row[DIG_FEATURES];
+            fill_likeness(&r, a, row);
+            for (size_t b = 0; b < DIG_FEATURES; b++) {
+                k[a][b] += size[a] * size[b] * row[b];
             }
         }
     }
 }
 
-static void add_shifts(const struct dig_whitened_digs_group *const group,
-                       const struct dig_common_error *const error, double k[])
+static inline void add_shifts(const struct dig_shifts *const shift,
+                              double                         k[DIG_FEATURES][DIG_FEATURES])
 {
-    const size_t n = group->features;
-    for (size_t s = 0; s < error->shift.shifts; s++) {
-        const double *const shift = error->shift.of[s];
-        for (size_t i = 0; i < n; i++) {
-            for (size_t j = 0; j < n; j++) {
-                k[i * n + j] += shift[group->feature[i]] * shift[group->feature[j]];
+    for (size_t s = 0; s < shift->shifts; s++) {
+        for (size_t a = 0; a < DIG_FEATURES; a++) {
+            for (size_t b = 0; b < DIG_FEATURES; b++) {
+                k[a][b] += shift->of[s][a] * shift->of[s][b];
             }
         }
     }
 }
 
-// Overwrites the lower triangle of k with that of W k W'; whiten[i] adds nothing to y before y[i].
-DIG_VECTORS static void whiten_both(const struct dig_whitened_digs_group *const group, double k[])
+// Moves the group's features, which ascend, to the front.
+static void pick(const struct dig_whitened_digs_group *const group,
+                 double                                      k[DIG_FEATURES][DIG_FEATURES])
+{
+    for (size_t i = 0; i < group->features && group->features < DIG_FEATURES; i++) {
+        for (size_t j = 0; j < group->features; j++) {
+            k[i][j] = k[group->feature[i]][group->feature[j]];
+        }
+    }
+}
+
+// The lower triangle of W k W', row by row; whiten[i] adds nothing to y before y[i].
+static inline void whiten_both(const struct dig_whitened_digs_group *const group,
+                               const double k[DIG_FEATURES][DIG_FEATURES], double whitened[])
 {
     const size_t n = group->features;
-    double       half[DIG_FEATURES * DIG_FEATURES]; // W k
-    memset(half, 0, n * n * sizeof half[0]);
-    for (size_t i = 0; i < n; i++) {
-        for (size_t r = i; r < n; r++) {
-            for (size_t j = 0; j < n; j++) {
-                half[r * n + j] += group->whiten[i][r] * k[i * n + j];
-            }
+    for (size_t r = 0; r < n; r++) {
+        double w[DIG_FEATURES];
+        double half[DIG_FEATURES]; // of W k
+        double row[DIG_FEATURES];
+        for (size_t i = 0; i <= r; i++) {
+            w[i] = group->whiten[i][r];
         }
-    }
-    memset(k, 0, n * n * sizeof k[0]);
-    for (size_t j = 0; j < n; j++) {
-        for (size_t r = j; r < n; r++) {
-            for (size_t c = j; c <= r; c++) {
-                k[r * n + c] += half[r * n + j] * group->whiten[j][c];
-            }
+        for (size_t first = 0; first <= r; first += DIG_ROWS_AT_ONCE) {
+            dig_rows_add(r + 1, w, DIG_FEATURES, &k[0][first], &half[first]);
         }
+        for (size_t first = 0; first <= r; first += DIG_ROWS_AT_ONCE) {
+            const size_t end = first + DIG_ROWS_AT_ONCE;
+            dig_rows_add(r < end ? r + 1 : end, half, DIG_FEATURES, &group->whiten[0][first],
+                         &row[first]);
+        }
+        memcpy(whitened + r * n, row, (r + 1) * sizeof row[0]);
     }
+}
+
+DIG_VECTORS static void fill_covariance(const struct dig_whitened_digs_group *const group,
+                                        const struct dig_common_error *const        error,
+                                        double                                      covariance[])
+{
+    double k[DIG_FEATURES][DIG_FEATURES] = { { 0.0 } };
+    add_parts(error, k);
+    add_shifts(&error->shift, k);
+    pick(group, k);
+    whiten_both(group, (const double(*)[DIG_FEATURES])k, covariance);
 }
 
 void dig_common_error_build(const struct dig_whitened_digs_group *const group,
@@ -110,9 +143,7 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
     const size_t n     = group->features;
     double       trace = 0.0;
     double       covariance[DIG_FEATURES * DIG_FEATURES];
-    smooth_part(group, error, covariance);
-    add_shifts(group, error, covariance);
-    whiten_both(group, covariance);
+    fill_covariance(group, error, covariance);
     for (size_t i = 0; i < n; i++) {
         trace += covariance[i * n + i] / (double)n;
         covariance[i * n + i] += 1.0 / (double)group->digs + error->even;
@@ -164,9 +195,7 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
         }
         for (size_t a = 0; a < DIG_FEATURES; a++) {
             factor[a] = dig_chance_normal(seed);
-            for (size_t b = 0; b <= a; b++) {
-                lower[a * DIG_FEATURES + b] = likeness(&r, a, b);
-            }
+            fill_likeness(&r, a, &lower[a * DIG_FEATURES]);
         }
         const enum dig_status status = dig_cholesky(DIG_FEATURES, lower);
         assert(status == DIG_OK);

@@ -28,7 +28,7 @@ struct dig_common_error {
     double            noise; // variance beyond 1/n, mean over the features
 };
 
-/// Fills inverse, log_det and noise from even, size and shift. Some ten microseconds.
+/// Fills inverse, log_det and noise from even, size and shift. Some microseconds.
 void dig_common_error_build(const struct dig_whitened_digs_group *group,
                             struct dig_common_error              *error);
 

@@ -136,14 +136,19 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
             best = tried;
         }
     }
-    for (size_t g = 0; g < batch->groups; g++) {
-        best.approaches[g] = dig_common_error_of_approaches(&batch->group[g]);
-    }
     for (size_t j = 0; j < l.unknowns; j++) {
         best.low[j]  = l.low[j];
         best.high[j] = l.high[j];
     }
     *fitted = best;
+}
+
+void dig_hypothesis_tell_approaches(const struct dig_whitened_digs *const batch,
+                                    struct dig_fitted *const              fitted)
+{
+    for (size_t g = 0; g < batch->groups; g++) {
+        fitted->approaches[g] = dig_common_error_of_approaches(&batch->group[g]);
+    }
 }
 
 void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,

@@ -28,6 +28,10 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *batch,
                         const struct dig_hypothesis *hypothesis, const double start[],
                         enum dig_fit_care care, struct dig_fitted *fitted);
 
+/// Fills a fit's approaches, which fitting leaves at nothing: a build of the covariance a group.
+void dig_hypothesis_tell_approaches(const struct dig_whitened_digs *batch,
+                                    struct dig_fitted              *fitted);
+
 /// Fits something that has no name beside the hypothesis of a fit, of the size that explains most;
 /// the misfit pays for the choice of it.
 void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *batch,

@@ -181,28 +181,21 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
     return DIG_OK;
 }
 
-// The innermost of all that is fitted to digs: a few sums at a time, which a compiler keeps in
-// registers. whiten[k] adds nothing to y before y[k].
+_Static_assert(DIG_FEATURES % DIG_ROWS_AT_ONCE == 0, "no rest");
+
+// whiten[k] adds nothing to y before y[k].
 DIG_VECTORS void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *const group,
                                           const double feature[DIG_FEATURES],
                                           double       y[DIG_FEATURES])
 {
-    enum { AT_ONCE = 10 };
-    _Static_assert(DIG_FEATURES % AT_ONCE == 0, "no rest");
     double x[DIG_FEATURES];
     for (size_t k = 0; k < group->features; k++) {
         x[k] = feature[group->feature[k]];
     }
-    for (size_t first = 0; first < DIG_FEATURES; first += AT_ONCE) {
-        const size_t end          = first + AT_ONCE;
-        const size_t last         = group->features < end ? group->features : end;
-        double       sum[AT_ONCE] = { 0.0 };
-        for (size_t k = 0; k < last; k++) {
-            for (size_t i = 0; i < AT_ONCE; i++) {
-                sum[i] += x[k] * group->whiten[k][first + i];
-            }
-        }
-        memcpy(&y[first], sum, sizeof sum);
+    for (size_t first = 0; first < DIG_FEATURES; first += DIG_ROWS_AT_ONCE) {
+        const size_t end = first + DIG_ROWS_AT_ONCE;
+        dig_rows_add(group->features < end ? group->features : end, x, DIG_FEATURES,
+                     &group->whiten[0][first], &y[first]);
     }
 }
 

@@ -29,6 +29,22 @@ static size_t least_filled(const struct dig_curve_set *const set)
     return least;
 }
 
+// A term is one of a degree less, which stands before it, times the last axis that it has.
+static void add_term(const unsigned power[DIG_AXES], struct dig_response_surface *const surface)
+{
+    const size_t j = surface->terms++;
+    unsigned     less[DIG_AXES];
+    memcpy(surface->power[j], power, sizeof surface->power[j]);
+    memcpy(less, power, sizeof less);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        surface->last[j] = power[a] > 0 ? a : surface->last[j];
+    }
+    less[surface->last[j]] -= j > 0 ? 1 : 0;
+    while (memcmp(surface->power[surface->of[j]], less, sizeof less) != 0) {
+        surface->of[j]++;
+    }
+}
+
 static void choose_terms(const struct dig_curve_set *const  set,
                          struct dig_response_surface *const surface)
 {
@@ -40,7 +56,7 @@ static void choose_terms(const struct dig_curve_set *const  set,
                 const unsigned power[DIG_AXES] = { x, y, degree - x - y };
                 if (power[0] < set->axis_count[0] && power[1] < set->axis_count[1] &&
                     power[2] < set->axis_count[2]) {
-                    memcpy(surface->power[surface->terms++], power, sizeof power);
+                    add_term(power, surface);
                 }
             }
         }
@@ -50,13 +66,9 @@ static void choose_terms(const struct dig_curve_set *const  set,
 static void terms_at(const struct dig_response_surface *const surface, const double place[DIG_AXES],
                      double term[DIG_RESPONSE_SURFACE_TERMS])
 {
-    for (size_t j = 0; j < surface->terms; j++) {
-        term[j] = 1.0;
-        for (int a = 0; a < DIG_AXES; a++) {
-            for (unsigned p = 0; p < surface->power[j][a]; p++) {
-                term[j] *= place[a];
-            }
-        }
+    term[0] = 1.0;
+    for (size_t j = 1; j < surface->terms; j++) {
+        term[j] = term[surface->of[j]] * place[surface->last[j]];
     }
 }
 
@@ -154,12 +166,14 @@ static void amplitude_at(const struct dig_response_surface *const surface, const
                          const double term[DIG_RESPONSE_SURFACE_TERMS],
                          double       amplitude[DIG_FORCE_CHANNELS])
 {
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        double sum = 0.0;
-        for (size_t j = 0; j < surface->terms; j++) {
-            sum += surface->log_amplitude[t][j][c] * term[j];
+    double sum[DIG_FORCE_CHANNELS] = { 0.0 };
+    for (size_t j = 0; j < surface->terms; j++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            sum[c] += surface->log_amplitude[t][j][c] * term[j];
         }
-        amplitude[c] = exp(sum);
+    }
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        amplitude[c] = exp(sum[c]);
     }
 }
 
@@ -233,6 +247,8 @@ enum dig_status dig_response_surface_fit(const struct dig_curve_set *const  set,
     return any ? DIG_OK : DIG_EINVAL;
 }
 
+_Static_assert(DIG_FEATURE_BINS == DIG_ROWS_AT_ONCE, "a channel at once");
+
 DIG_VECTORS void dig_response_surface_features(const struct dig_response_surface *const surface,
                                                const size_t                             trajectory,
                                                const double place[DIG_AXES],
@@ -243,13 +259,9 @@ DIG_VECTORS void dig_response_surface_features(const struct dig_response_surface
     terms_at(surface, place, term);
     amplitude_at(surface, trajectory, term, amplitude);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        double shape[DIG_FEATURE_BINS] = { 0.0 };
-        for (size_t j = 0; j < surface->terms; j++) {
-            const double *const of = &surface->feature[trajectory][j][c * DIG_FEATURE_BINS];
-            for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-                shape[b] += term[j] * of[b];
-            }
-        }
+        double shape[DIG_FEATURE_BINS];
+        dig_rows_add(surface->terms, term, DIG_FEATURES,
+                     &surface->feature[trajectory][0][c * DIG_FEATURE_BINS], shape);
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
             feature[c * DIG_FEATURE_BINS + b] = shape[b] * amplitude[c];
         }

@@ -21,6 +21,8 @@ struct dig_response_surface {
     const struct dig_curve_set *set; // not owned
     size_t                      terms;
     unsigned                    power[DIG_RESPONSE_SURFACE_TERMS][DIG_AXES];
+    size_t                      of[DIG_RESPONSE_SURFACE_TERMS];   // each is this term times
+    size_t                      last[DIG_RESPONSE_SURFACE_TERMS]; // the place on this axis
     bool                        known[DIG_TRAJECTORY_MAX];
     double log_amplitude[DIG_TRAJECTORY_MAX][DIG_RESPONSE_SURFACE_TERMS][DIG_FORCE_CHANNELS];
     double curve[DIG_TRAJECTORY_MAX][DIG_RESPONSE_SURFACE_TERMS][DIG_FORCE_CHANNELS]

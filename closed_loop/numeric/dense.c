@@ -21,19 +21,20 @@ static inline double dot(const size_t n, const double a[], const double b[])
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
+// Column by column: what a row needs was not stored just before.
 DIG_VECTORS enum dig_status dig_cholesky(const size_t n, double a[])
 {
     assert(a != NULL);
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j < i; j++) {
-            const double sum = a[i * n + j] - dot(j, a + i * n, a + j * n);
-            a[i * n + j]     = sum / a[j * n + j];
-        }
-        const double left = a[i * n + i] - dot(i, a + i * n, a + i * n);
+    for (size_t j = 0; j < n; j++) {
+        const double left = a[j * n + j] - dot(j, a + j * n, a + j * n);
         if (!(left > 0.0)) {
             return DIG_EINVAL;
         }
-        a[i * n + i] = sqrt(left);
+        a[j * n + j] = sqrt(left);
+        for (size_t i = j + 1; i < n; i++) {
+            const double sum = a[i * n + j] - dot(j, a + i * n, a + j * n);
+            a[i * n + j]     = sum / a[j * n + j];
+        }
     }
     return DIG_OK;
 }

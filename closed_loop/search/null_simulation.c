@@ -127,15 +127,14 @@ static void draw_scatter(const struct dig_whitened_digs *const batch, const size
 }
 
 void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
-                              const struct dig_fitted *const fitted, uint64_t *const seed,
+                              const struct dig_fitted *const        fitted,
+                              const struct dig_common_error error[], uint64_t *const seed,
                               struct dig_whitened_digs *const drawn)
 {
-    assert(batch != NULL && fitted != NULL && seed != NULL && drawn != NULL);
-    double                  common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
-    double                  size[DIG_TRAJECTORY_MAX];
-    struct dig_common_error error[DIG_TRAJECTORY_MAX];
-    double                  z[DIG_STEPS_MAX] = { 0.0 };
-    dig_hypothesis_errors(batch, fitted, error);
+    assert(batch != NULL && fitted != NULL && error != NULL && seed != NULL && drawn != NULL);
+    double common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    double size[DIG_TRAJECTORY_MAX];
+    double z[DIG_STEPS_MAX] = { 0.0 };
     for (size_t k = 0; batch->steps != NULL && k < batch->steps->steps; k++) {
         z[k] = batch->steps->middle[k] + dig_chance_normal(seed);
     }
@@ -186,9 +185,11 @@ dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
     struct dig_fitted          again[DIG_RIVALS_MAX + 1];
     struct dig_null_simulation made       = { .draws = 0 };
     double                     squares[3] = { 0.0 };
+    struct dig_common_error    error[DIG_TRAJECTORY_MAX];
+    dig_hypothesis_errors(batch, fitted, error);
     while (made.draws < draws && !is_answered(asked, &made)) {
         struct dig_statistic s;
-        dig_null_simulation_digs(batch, fitted, seed, &drawn);
+        dig_null_simulation_digs(batch, fitted, error, seed, &drawn);
         dig_null_simulation_fit(&drawn, &fitted->hypothesis, rivals, rival, fitted->number,
                                 DIG_FIT_BARE, again, &s);
         const double value[3] = { s.misfit, s.about, s.gain };

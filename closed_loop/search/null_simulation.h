@@ -41,9 +41,11 @@ void dig_null_simulation_fit(const struct dig_whitened_digs *batch,
                              enum dig_fit_care care, struct dig_fitted fitted[],
                              struct dig_statistic *statistic);
 
-/// Draws the digs of one campaign from fitted into drawn, which is a copy of batch.
+/// Draws the digs of one campaign from fitted into drawn, which is a copy of batch. error:
+/// dig_hypothesis_errors() of both, which no draw changes.
 void dig_null_simulation_digs(const struct dig_whitened_digs *batch,
-                              const struct dig_fitted *fitted, uint64_t *seed,
+                              const struct dig_fitted        *fitted,
+                              const struct dig_common_error error[], uint64_t *seed,
                               struct dig_whitened_digs *drawn);
 
 /// Draws from fitted and fits again, draws times, or fewer where they answer what is asked (may be

@@ -72,13 +72,15 @@ struct dig_whiteness dig_portmanteau_judge(const struct dig_whitened_digs *const
     assert(batch != NULL && fitted != NULL && draws > 0);
     double                   q[DIG_MEASURED_MAX];
     double                   as_large = 0.0;
-    struct dig_whitened_digs drawn    = *batch;
-    struct dig_whiteness     made     = { .digs = batch->digs };
-    made.statistic                    = all_digs(batch, fitted, q);
+    struct dig_common_error  error[DIG_TRAJECTORY_MAX];
+    struct dig_whitened_digs drawn = *batch;
+    struct dig_whiteness     made  = { .digs = batch->digs };
+    made.statistic                 = all_digs(batch, fitted, q);
     draw_digs(batch->digs, q, &seed, &made);
+    dig_hypothesis_errors(batch, fitted, error);
     for (size_t d = 0; d < draws; d++) {
         struct dig_fitted again;
-        dig_null_simulation_digs(batch, fitted, &seed, &drawn);
+        dig_null_simulation_digs(batch, fitted, error, &seed, &drawn);
         dig_hypothesis_fit(&drawn, &fitted->hypothesis, fitted->number, DIG_FIT_BARE, &again);
         const double mean = all_digs(&drawn, &again, q);
         made.expected += mean / (double)draws;

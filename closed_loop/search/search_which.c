@@ -127,7 +127,6 @@ static void give_up(struct dig_search_work *const c)
     c->s->unlisted = true;
     c->s->chosen   = c->s->nameless;
     memcpy(c->s->chosen.noise, c->s->plain.noise, sizeof c->s->chosen.noise);
-    memcpy(c->s->chosen.approaches, c->s->plain.approaches, sizeof c->s->chosen.approaches);
 }
 
 // What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must

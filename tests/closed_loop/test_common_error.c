@@ -98,6 +98,53 @@ TEST(a_shift_is_as_uncertain_as_it_says)
     assert_close(dig_common_error_squares(group, &error, y), 9.0, 1e-2);
 }
 
+// What the two parts and the shift of some_error() have between two features, units of the table.
+static double between(const struct dig_common_error *const error, const size_t a, const size_t b)
+{
+    const double apart = fabs((double)(a % DIG_FEATURE_BINS) - (double)(b % DIG_FEATURE_BINS));
+    const double alike = (a / DIG_FEATURE_BINS == b / DIG_FEATURE_BINS ? 1.0 : 0.7) *
+                         exp(-0.5 * apart * apart / (2.5 * 2.5));
+    return (error->size[0][a] * error->size[0][b] + error->size[1][a] * error->size[1][b]) *
+               (alike + (a == b ? 1e-6 : 0.0)) +
+           error->shift.of[1][a] * error->shift.of[1][b];
+}
+
+// Digs that lack bins at their ends have the covariance of those that they have: C x over C is
+// x' C x, C by its formula.
+TEST(a_covariance_is_of_the_features_that_were_measured)
+{
+    static struct dig_whitened_digs_group group;
+    struct dig_gravel                     gravel = { { 0.5, 0.5, 2500 } };
+    (void)make_group();
+    measured[1].first = 0.25;
+    measured[2].last  = 0.85;
+    batch_digs(DIGS, measured, &gravel, &batch);
+    group = batch.group[0];
+    assert_true(group.features < DIG_FEATURES && group.feature[0] > 0);
+    const struct dig_common_error error = some_error(&group);
+    double                        x[DIG_FEATURES];
+    double                        along[DIG_FEATURES] = { 0.0 }; // W' x
+    double                        y[DIG_FEATURES]     = { 0.0 };
+    double                        squares             = 0.0;
+    for (size_t i = 0; i < group.features; i++) {
+        x[i] = cos(1.3 * (double)i);
+        for (size_t k = 0; k <= i; k++) {
+            along[k] += group.whiten[k][i] * x[i];
+        }
+    }
+    for (size_t i = 0; i < group.features; i++) {
+        y[i] = (1.0 / DIGS + error.even) * x[i];
+        for (size_t k = 0; k <= i; k++) {
+            for (size_t l = 0; l < group.features; l++) {
+                y[i] += group.whiten[k][i] * between(&error, group.feature[k], group.feature[l]) *
+                        along[l];
+            }
+        }
+        squares += x[i] * y[i];
+    }
+    assert_close(dig_common_error_squares(&group, &error, y), squares, 1e-9 * squares);
+}
+
 TEST(without_parts_only_scatter_and_the_even_part_are_left)
 {
     const struct dig_whitened_digs_group *const group           = make_group();

@@ -130,11 +130,13 @@ TEST(fitted_steps_are_as_far_off_as_is_said)
     make_digs(&gravel, &seed);
     dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &truth);
     for (int c = 0; c < campaigns(); c++) {
-        double            z[STEPS];
-        double            covariance[STEPS * STEPS];
-        struct dig_fitted fitted;
+        double                  z[STEPS];
+        double                  covariance[STEPS * STEPS];
+        struct dig_fitted       fitted;
+        struct dig_common_error error[DIG_TRAJECTORY_MAX];
         drawn = batch;
-        dig_null_simulation_digs(&batch, &truth, &seed, &drawn);
+        dig_hypothesis_errors(&batch, &truth, error);
+        dig_null_simulation_digs(&batch, &truth, error, &seed, &drawn);
         for (size_t k = 0; k < STEPS; k++) {
             z[k] = -model_normal(&seed);
         }
@@ -150,10 +152,12 @@ TEST(fitted_steps_are_as_far_off_as_is_said)
     double left[2] = { 0.0, 0.0 };
     batch.steps    = &steps;
     for (int c = 0; c < campaigns(); c++) {
-        struct dig_fitted fitted;
+        struct dig_fitted       fitted;
+        struct dig_common_error error[DIG_TRAJECTORY_MAX];
         steps.middle[1] = c % 2 == 0 ? 0.0 : 5.0;
         drawn           = batch;
-        dig_null_simulation_digs(&batch, &truth, &seed, &drawn);
+        dig_hypothesis_errors(&batch, &truth, error);
+        dig_null_simulation_digs(&batch, &truth, error, &seed, &drawn);
         dig_hypothesis_fit(&drawn, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
         left[c % 2] += fitted.squares / (0.5 * campaigns());
     }

@@ -39,12 +39,14 @@ TEST(nine_intervals_of_ten_hold_the_truth)
     double                          held      = 0.0;
     const int                       campaigns = test_is_quick() ? CAMPAIGNS / 4 : CAMPAIGNS;
     for (int c = 0; c < campaigns; c++) {
-        struct dig_fitted fitted;
+        struct dig_fitted       fitted;
+        struct dig_common_error error[DIG_TRAJECTORY_MAX];
         for (size_t a = 0; a < DIG_AXES; a++) {
             truth.number[a] = 2.0 * model_uniform(&seed) - 1.0;
         }
         drawn = batch;
-        dig_null_simulation_digs(&batch, &truth, &seed, &drawn);
+        dig_hypothesis_errors(&batch, &truth, error);
+        dig_null_simulation_digs(&batch, &truth, error, &seed, &drawn);
         dig_hypothesis_fit(&drawn, &plain, truth.number, DIG_FIT_THOROUGH, &fitted);
         dig_posterior_intervals(&drawn, (uint64_t)c, &fitted, NULL);
         for (size_t a = 0; a < DIG_AXES; a++) {
