@@ -53,7 +53,14 @@ static void put_back(const struct dig_machine_dig *const dig, const size_t at, c
     }
 }
 
-static void solve_all(const struct dig_machine *const     machine,
+static bool tells(const struct reading *const r, const size_t channel)
+{
+    return r->solved &&
+           (channel == DIG_CHANNEL_MY_Nm ? r->wrench.moment_valid : r->wrench.force_valid);
+}
+
+// True where the samples that tell the moment tell the forces, and no others do.
+static bool solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
                       const struct dig_correction *const correction, const bool with_sigma,
                       const struct dig_curve_set *const set, const size_t from, const size_t to,
@@ -61,6 +68,7 @@ static void solve_all(const struct dig_machine *const     machine,
 {
     struct dig_machine corrected = dig_correction_machine(machine, correction);
     corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
+    bool alike                   = true;
     for (size_t i = from; i < to; i += every) {
         struct reading    r = { .solved = false };
         struct dig_front  front;
@@ -74,8 +82,10 @@ static void solve_all(const struct dig_machine *const     machine,
         if (r.solved) {
             r.pose = dig_machine_dig_point(set, dig, &front);
         }
+        alike             = alike && tells(&r, DIG_CHANNEL_MY_Nm) == tells(&r, DIG_CHANNEL_FX_N);
         reading[i - from] = r;
     }
+    return alike;
 }
 
 // Where the dig lies by the corrected angles: elsewhere than by those it was found by, where these
@@ -99,47 +109,70 @@ static struct dig_track track_of(const struct dig_curve_set *const   set,
     return points > 0 ? dig_machine_dig_fit(set, dig, points, room) : dig->track;
 }
 
-// One channel through the estimator's window.
+// A reading in rig scale, all channels.
+static struct dig_window_sample sample_of(const struct dig_machine_dig *const dig,
+                                          const struct reading *const r, const size_t at)
+{
+    const struct dig_wrench *const w = &r->wrench;
+
+    const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, w->Fx_N, w->Fz_N };
+    const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm, w->sigma_Fx_N, w->sigma_Fz_N };
+
+    struct dig_window_sample sample = { .time_s     = dig->time_s[at] / sqrt(dig->lambda),
+                                        .pose       = r->pose,
+                                        .has_forces = w->force_valid };
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        const double scale = pow(dig->lambda, c == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
+        // What does not average down is a share of the whole, told for the moment only.
+        const double slow =
+            w->sigma_My_Nm > 0.0 ? sigmas[c] * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
+        sample.value[c] = value[c] / scale;
+        sample.sigma[c] = (float)(sigmas[c] / scale);
+        sample.slow[c]  = (float)(slow / scale);
+    }
+    return sample;
+}
+
+// The samples that tell a channel, through the estimator's window as its moment; of those that tell
+// the moment, the forces along where all tell them.
 static bool observe(const struct dig_curve_set *const set, const struct dig_machine_dig *const dig,
                     const struct dig_track *const track, const size_t from, const size_t to,
-                    const size_t every, const struct reading reading[],
-                    const enum dig_channel channel, struct dig_window *const window,
-                    struct dig_observation *const observation)
+                    const size_t every, const struct reading reading[], const size_t channel,
+                    struct dig_window *const window, struct dig_observation *const observation)
 {
-    const double scale = pow(dig->lambda, channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
-    size_t       told  = 0;
-    size_t       of    = 0;
+    size_t told = 0;
+    size_t of   = 0;
     dig_window_close(window);
     dig_window_open(window);
     for (size_t i = from; i < to; i += every) {
-        const struct reading *const    r = &reading[i - from];
-        const struct dig_wrench *const w = &r->wrench;
-
-        const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, w->Fx_N, w->Fz_N };
-        const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm, w->sigma_Fx_N, w->sigma_Fz_N };
-        const double sigma                      = sigmas[channel];
-        // What does not average down is a share of the whole, told for the moment only.
-        const double slow =
-            w->sigma_My_Nm > 0.0 ? sigma * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
-        const bool valid =
-            r->solved && (channel == DIG_CHANNEL_MY_Nm ? w->moment_valid : w->force_valid);
-        const bool inside = i >= dig->contact && i < dig->end;
+        const struct reading *const r      = &reading[i - from];
+        const bool                  inside = i >= dig->contact && i < dig->end;
         of += inside ? 1 : 0;
-        told += inside && valid ? 1 : 0;
-        if (valid) {
-            dig_window_add(window, &(struct dig_window_sample){
-                                       .time_s = dig->time_s[i] / sqrt(dig->lambda),
-                                       .value  = { value[channel] / scale },
-                                       .pose   = r->pose,
-                                       .sigma  = { (float)(sigma / scale) },
-                                       .slow   = { (float)(slow / scale) },
-                                   });
+        told += inside && tells(r, channel) ? 1 : 0;
+        if (tells(r, channel)) {
+            struct dig_window_sample sample = sample_of(dig, r, i);
+            sample.has_forces               = sample.has_forces && channel == DIG_CHANNEL_MY_Nm;
+            sample.value[0]                 = sample.value[channel];
+            sample.sigma[0]                 = sample.sigma[channel];
+            sample.slow[0]                  = sample.slow[channel];
+            dig_window_add(window, &sample);
         }
     }
     const struct dig_route route = dig_route_make(&set->trajectory[dig->trajectory], set->tooth_m);
     return of > 0 && (double)told >= enough_share * (double)of &&
            dig_window_observe(window, &route, track, 0.18 * set->tooth_m, set->smooth_half_s,
                               observation) == DIG_OK;
+}
+
+static void write_channel(const bool is_measured, const double value[DIG_CURVE_POINTS],
+                          const double sigma[DIG_CURVE_POINTS], const size_t channel,
+                          struct dig_measured *const measured)
+{
+    measured->measured[channel] = is_measured;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        measured->value[channel][k] = is_measured ? value[k] : 0.0;
+        measured->sigma[channel][k] = is_measured ? sigma[k] : 0.0;
+    }
 }
 
 // By what the window holds, observed along its route.
@@ -204,33 +237,33 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
         free(room);
         return DIG_ENOMEM;
     }
-    solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from, to, every,
-              reading);
+    const bool alike = solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from,
+                                 to, every, reading);
 
-    const struct dig_track track  = track_of(set, dig, correction, from, to, every, reading, room);
-    enum dig_status        status = DIG_OK;
-    for (int c = DIG_FORCE_CHANNELS - 1; c >= 0 && status == DIG_OK; c--) {
-        struct dig_observation o = { .first = 0.0 };
-        measured->measured[c] =
-            observe(set, dig, &track, from, to, every, reading, (enum dig_channel)c, window, &o);
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            measured->value[c][k] = measured->measured[c] ? o.moment_Nm[k] : 0.0;
-            measured->sigma[c][k] = measured->measured[c] ? o.sigma_Nm[k] : 0.0;
-        }
-        if (c == DIG_CHANNEL_MY_Nm) {
-            status               = measured->measured[c] ? DIG_OK : DIG_ENOMATCH;
-            measured->first      = o.first;
-            measured->last       = o.last;
-            measured->pace       = dig->pace;
-            measured->trajectory = dig->trajectory;
-            tell_pitch(dig, measured);
-            if (status == DIG_OK && dig_approach_varies(set, (size_t)dig->trajectory)) {
-                tell_path_depth(set, dig, &track, window, measured->deeper);
-            }
-        }
+    const struct dig_track track = track_of(set, dig, correction, from, to, every, reading, room);
+    // The moment last, whose samples the window keeps.
+    struct dig_observation o = { .first = 0.0 };
+    for (size_t c = DIG_FORCE_CHANNELS - 1; c > 0 && !alike; c--) {
+        const bool is = observe(set, dig, &track, from, to, every, reading, c, window, &o);
+        write_channel(is, o.moment_Nm, o.sigma_Nm, c, measured);
+    }
+    o = (struct dig_observation){ .first = 0.0 };
+    const bool is =
+        observe(set, dig, &track, from, to, every, reading, DIG_CHANNEL_MY_Nm, window, &o);
+    write_channel(is, o.moment_Nm, o.sigma_Nm, DIG_CHANNEL_MY_Nm, measured);
+    for (size_t c = 1; c < DIG_FORCE_CHANNELS && alike; c++) {
+        write_channel(is, o.force_N[c - 1], o.force_sigma_N[c - 1], c, measured);
+    }
+    measured->first      = o.first;
+    measured->last       = o.last;
+    measured->pace       = dig->pace;
+    measured->trajectory = dig->trajectory;
+    tell_pitch(dig, measured);
+    if (is && dig_approach_varies(set, (size_t)dig->trajectory)) {
+        tell_path_depth(set, dig, &track, window, measured->deeper);
     }
     free(window);
     free(reading);
     free(room);
-    return status;
+    return is ? DIG_OK : DIG_ENOMATCH;
 }

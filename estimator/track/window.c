@@ -226,9 +226,14 @@ static double noise_left(const struct dig_window *const window, const struct ran
 }
 
 // A sample's sigma after smoothing: white noise averages, the slow part does not.
-static double smoothed_sigma(const double left, const double sigma, const double slow)
+static double smoothed_sigma(const struct dig_window *const window, const struct range range,
+                             const size_t i, const double half_s, const size_t channel)
 {
-    return sqrt(slow * slow + left * fmax(sigma * sigma - slow * slow, 0.0));
+    const double sigma  = (double)window->sample[i].sigma[channel];
+    const double slow   = (double)window->sample[i].slow[channel];
+    const double white2 = fmax(sigma * sigma - slow * slow, 0.0);
+    const double left   = white2 > 0.0 ? noise_left(window, range, i, half_s) : 0.0;
+    return sqrt(slow * slow + left * white2);
 }
 
 // Smooths a channel and evaluates it and its sigma at the grid.
@@ -246,11 +251,9 @@ static void read_channel(struct dig_window *const window, const struct range ran
         out[k]         = 0.0;
         sigma[k]       = 0.0;
         if (spot[k].measured) {
-            const struct dig_window_sample *const at = &window->sample[i];
             out[k] =
                 window->smooth[i] + spot[k].share * (window->smooth[i + 1] - window->smooth[i]);
-            sigma[k] = smoothed_sigma(noise_left(window, range, i, half_s),
-                                      (double)at->sigma[channel], (double)at->slow[channel]);
+            sigma[k] = smoothed_sigma(window, range, i, half_s, channel);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include "closed_loop/recordings/observe_machine.h"
 
+#include "closed_loop/recordings/machine_dig.h"
 #include "closed_loop/recordings/observe.h"
 #include "tests/made_table.h"
 #include "tests/read.h"
@@ -130,6 +131,34 @@ TEST(a_dig_with_a_gap_is_seen_but_not_observed)
     assert_int_equal(digs.digs, 1);
     assert_int_equal(digs.dig[0].trajectory, direct[0].trajectory);
     dig_observed_digs_finish(&digs);
+    dig_machine_recording_finish(&r);
+}
+
+// A sample in the air before the dig that tells no forces, on which no curve depends, makes each
+// channel go its own way.
+TEST(channels_told_together_are_as_one_by_one)
+{
+    const struct dig_correction  none     = { .delay_s = 0.0 };
+    struct dig_machine_recording r        = record();
+    struct dig_measured          together = { .name = "" };
+    struct dig_measured          alone    = { .name = "" };
+    struct dig_machine_dig       dig;
+    struct dig_error             error = { "" };
+    assert_ok(dig_machine_dig_make(&machine, set, &r, 0, &dig, &error), error);
+    assert_int_equal(
+        dig_machine_dig_measure(&machine, set, &dig, &none, DIG_MEASURE_WITH_SIGMA, &together),
+        DIG_OK);
+    const size_t air = dig_machine_dig_sample_at(&dig, dig.time_s[dig.contact] - 0.8);
+    dig.sample[air].valid[DIG_SIGNAL_BOOM_HEAD_Pa] = false;
+    assert_int_equal(
+        dig_machine_dig_measure(&machine, set, &dig, &none, DIG_MEASURE_WITH_SIGMA, &alone),
+        DIG_OK);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        assert_true(together.measured[c] && alone.measured[c]);
+        assert_memory_equal(together.value[c], alone.value[c], sizeof alone.value[c]);
+        assert_memory_equal(together.sigma[c], alone.sigma[c], sizeof alone.sigma[c]);
+    }
+    dig_machine_dig_finish(&dig);
     dig_machine_recording_finish(&r);
 }
 
