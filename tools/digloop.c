@@ -69,8 +69,7 @@ int main(const int argc, char *argv[])
     struct dig_error       error   = { "" };
     dig_streams_begin();
     if (digloop_parse(argc, argv, &options, &error) != DIG_OK) {
-        (void)fprintf(stderr, "digloop: %s\nTry digloop --help.\n", error.text);
-        return 2;
+        return digloop_refuse(argv[1], &error);
     }
     // The one command that goes by no table.
     const bool            checks = strcmp(options.command, "check") == 0;

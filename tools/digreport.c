@@ -181,10 +181,11 @@ int main(const int argc, char *argv[])
     struct digreport_options options = { .logs = 0 };
     struct dig_error         error   = { "" };
     dig_streams_begin();
-    enum dig_status status = digreport_parse(argc, argv, &options, &error);
-    if (status == DIG_OK) {
-        status = options.shift ? report_shift(&options, &error) : report_runs(&options, &error);
+    if (digreport_parse(argc, argv, &options, &error) != DIG_OK) {
+        return digreport_refuse(argv[1], &error);
     }
+    const enum dig_status status =
+        options.shift ? report_shift(&options, &error) : report_runs(&options, &error);
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digreport: %s\n", error.text);
     }

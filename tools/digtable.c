@@ -43,10 +43,10 @@ static int run(const struct dig_arguments *const a)
         i++;
     }
     if (a->positionals > commands[i].most) {
-        return dig_cli_bad_usage("%s: one argument too many", a->positional[commands[i].most]);
+        return dig_cli_bad_usage(a, "%s: one argument too many", a->positional[commands[i].most]);
     }
     if (a->positionals < commands[i].least) {
-        return dig_cli_bad_usage("%s: expected %s", a->command->name, a->command->usage);
+        return dig_cli_bad_usage(a, "%s: expected %s", a->command->name, a->command->usage);
     }
     return commands[i].run(a);
 }

@@ -2,6 +2,7 @@
 
 #include "core/command_line.h"
 #include "core/did_you_mean.h"
+#include "core/help.h"
 #include "core/units.h"
 #include "files/text/whole.h"
 
@@ -173,6 +174,12 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
         *options = o;
     }
     return status;
+}
+
+int digloop_refuse(const char *const word, const struct dig_error *const error)
+{
+    dig_help_refuse(&program, word, error->text, stderr);
+    return 2;
 }
 
 enum dig_status digloop_input(const enum dig_status status)

@@ -2,6 +2,7 @@
 
 #include "core/command_line.h"
 #include "core/did_you_mean.h"
+#include "core/help.h"
 #include "files/text/whole.h"
 
 #include <getopt.h>
@@ -145,6 +146,12 @@ enum dig_status digreport_parse(const int argc, char *argv[],
     }
     *options = o;
     return DIG_OK;
+}
+
+int digreport_refuse(const char *const word, const struct dig_error *const error)
+{
+    dig_help_refuse(&program, word, error->text, stderr);
+    return 2;
 }
 
 enum dig_status digreport_input(const enum dig_status status)

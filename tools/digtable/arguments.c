@@ -1,6 +1,6 @@
 #include "tools/digtable/arguments.h"
 
-#include "core/did_you_mean.h"
+#include "core/help.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "files/job_plan.h"
@@ -16,17 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-__attribute__((format(printf, 1, 2))) int dig_cli_bad_usage(const char *const format, ...)
-{
-    char    text[4096];
-    va_list args;
-    va_start(args, format);
-    (void)vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    dig_text_print(stderr, "digtable: %s\ndigtable: see digtable --help\n", text);
-    return EXIT_BAD_INPUT;
-}
 
 int dig_cli_bad_input(const enum dig_status status, const struct dig_error *const error)
 {
@@ -271,6 +260,18 @@ static const struct dig_program program = {
     .option      = options,
 };
 
+__attribute__((format(printf, 2, 3))) int dig_cli_bad_usage(const struct dig_arguments *const a,
+                                                            const char *const format, ...)
+{
+    char    text[4096];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    dig_help_refuse(&program, a->word, text, stderr);
+    return EXIT_BAD_INPUT;
+}
+
 struct dig_engine dig_cli_engine(const struct dig_arguments *const a)
 {
     struct dig_engine engine = a->engine();
@@ -281,6 +282,7 @@ struct dig_engine dig_cli_engine(const struct dig_arguments *const a)
 int dig_arguments_read(const int argc, char **const argv, struct dig_arguments *const a)
 {
     *a = (struct dig_arguments){
+        .word         = argv[1],
         .gravel       = { (double)NAN, (double)NAN, (double)NAN },
         .approach     = dig_approach_plain(),
         .young_Pa     = (double)NAN,
@@ -293,20 +295,21 @@ int dig_arguments_read(const int argc, char **const argv, struct dig_arguments *
     struct dig_error error = { "" };
     a->command             = dig_options_read(&program, argc, argv, a, &error);
     if (a->command == NULL) {
-        return dig_cli_bad_usage("%s", error.text);
+        return dig_cli_bad_usage(a, "%s", error.text);
     }
     if (a->seed > INT64_MAX) {
-        return dig_cli_bad_usage("--seed %" PRIu64 ": expected a whole number below 2^63", a->seed);
+        return dig_cli_bad_usage(a, "--seed %" PRIu64 ": expected a whole number below 2^63",
+                                 a->seed);
     }
     a->approach.attack_rad *= DIG_RAD_PER_DEG; // degrees until here
     for (; optind < argc; optind++) {
         if (a->positionals == DIG_POSITIONALS_MAX) {
-            return dig_cli_bad_usage("%s: one argument too many", argv[optind]);
+            return dig_cli_bad_usage(a, "%s: one argument too many", argv[optind]);
         }
         a->positional[a->positionals++] = argv[optind];
     }
     if (a->threads > 0 && !a->has_threads) {
-        return dig_cli_bad_usage("--threads: only --engine single and cuda have them");
+        return dig_cli_bad_usage(a, "--threads: only --engine single and cuda have them");
     }
     if (a->threads == 0 && a->has_threads) {
         a->threads = strcmp(a->command->name, "dig") == 0 ? all_cores() : 1;

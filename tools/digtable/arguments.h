@@ -21,6 +21,7 @@ struct dig_engine; // offline_dem/sweep/sweep.h
 /// Every option of every command, with its default where it was not given.
 struct dig_arguments {
     const struct dig_command *command;
+    const char               *word; // argv[1]
     const char               *positional[DIG_POSITIONALS_MAX];
     int                       positionals;
     const char               *output, *trajectory, *bed, *save_bed, *vtk, *map;
@@ -51,7 +52,8 @@ struct dig_engine dig_cli_engine(const struct dig_arguments *a);
 
 /// Print to stderr and return the exit code: bad usage; bad input, which is the user's to mend but
 /// for a lack of memory; work that failed, be it for its input or not.
-__attribute__((format(printf, 1, 2))) int dig_cli_bad_usage(const char *format, ...);
+__attribute__((format(printf, 2, 3))) int dig_cli_bad_usage(const struct dig_arguments *a,
+                                                            const char *format, ...);
 int dig_cli_bad_input(enum dig_status status, const struct dig_error *error);
 int dig_cli_work_failed(enum dig_status status, const struct dig_error *error);
 

@@ -143,7 +143,7 @@ static enum dig_status approach(const struct dig_scene *const     scene,
 int dig_cli_dig(const struct dig_arguments *const a)
 {
     if (a->trajectory == NULL || a->output == NULL) {
-        return dig_cli_bad_usage("dig: %s missing",
+        return dig_cli_bad_usage(a, "dig: %s missing",
                                  a->output == NULL ? "-o CURVE.csv" : "--trajectory NAME");
     }
     struct dig_gravel gravel;
@@ -151,7 +151,7 @@ int dig_cli_dig(const struct dig_arguments *const a)
         gravel.value[i] = a->gravel[i];
         if (isnan(a->gravel[i])) {
             static const char *const option[DIG_AXES] = { "--friction", "--rolling", "--density" };
-            return dig_cli_bad_usage("dig: %s missing", option[i]);
+            return dig_cli_bad_usage(a, "dig: %s missing", option[i]);
         }
     }
     struct dig_error error = { "" };
@@ -278,7 +278,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
 int dig_cli_generate(const struct dig_arguments *const a)
 {
     if (a->output == NULL) {
-        return dig_cli_bad_usage("generate: %s missing", "-o TABLE.sqlite");
+        return dig_cli_bad_usage(a, "generate: %s missing", "-o TABLE.sqlite");
     }
     struct dig_error       error = { "" };
     struct dig_scene       scene;

@@ -64,7 +64,7 @@ static enum dig_status store_dig(void *const context, const struct dig_foreign_d
 int dig_cli_import(const struct dig_arguments *const a)
 {
     if (a->output == NULL || a->map == NULL) {
-        return dig_cli_bad_usage("import: %s missing",
+        return dig_cli_bad_usage(a, "import: %s missing",
                                  a->map == NULL ? "--map MAP.yaml" : "-o TABLE.sqlite");
     }
     struct dig_error     error = { "" };

@@ -173,7 +173,7 @@ static int show(const struct dig_arguments *const a, const struct dig_curve_set 
 {
     const size_t entry = find_entry(a, set);
     if (entry >= dig_listed_count(set)) {
-        return dig_cli_bad_usage("%s: no such entry, digtable list shows all", a->positional[0]);
+        return dig_cli_bad_usage(a, "%s: no such entry, digtable list shows all", a->positional[0]);
     }
     size_t trajectory = 0;
     while (trajectory < set->trajectories &&
@@ -187,7 +187,7 @@ static int show(const struct dig_arguments *const a, const struct dig_curve_set 
         for (size_t t = 0; t < set->trajectories; t++) {
             dig_guess_try(&guess, set->trajectory[t].name);
         }
-        return dig_cli_bad_usage("%s: no such trajectory in this entry%s",
+        return dig_cli_bad_usage(a, "%s: no such trajectory in this entry%s",
                                  a->trajectory != NULL ? a->trajectory : a->positional[0],
                                  guess.best != NULL ? dig_guess_text(&guess, "", text)
                                                     : ", digtable list shows all");
@@ -206,7 +206,7 @@ int dig_cli_show(const struct dig_arguments *const a)
 {
     for (int i = 0; i < DIG_AXES; i++) {
         if (a->positionals < 2 && isnan(a->gravel[i])) {
-            return dig_cli_bad_usage("show: %s",
+            return dig_cli_bad_usage(a, "show: %s",
                                      "name an ENTRY, or --friction, --rolling and --density");
         }
     }

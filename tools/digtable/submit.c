@@ -201,10 +201,10 @@ static enum dig_status submit(const struct dig_arguments *const  a,
 int dig_cli_submit(const struct dig_arguments *const a)
 {
     if (a->output == NULL) {
-        return dig_cli_bad_usage("submit: %s missing", "-o TABLE.sqlite");
+        return dig_cli_bad_usage(a, "submit: %s missing", "-o TABLE.sqlite");
     }
     if (a->slurm_options > 0 && !a->slurm) {
-        return dig_cli_bad_usage("submit: %s is for --slurm", a->slurm_option[0]);
+        return dig_cli_bad_usage(a, "submit: %s is for --slurm", a->slurm_option[0]);
     }
     struct dig_error        error = { "" };
     struct dig_scene        scene;

@@ -198,7 +198,7 @@ int main(const int argc, char *argv[])
     dig_streams_begin();
     const enum dig_status status = dig_rig_options_parse(argc, argv, &options, &error);
     if (status != DIG_OK) {
-        (void)fprintf(stderr, "digrig: %s\nTry digrig --help.\n", error.text);
+        dig_rig_options_refuse(argv[1], &error);
         return EXIT_USAGE;
     }
     return dig_streams_end("digrig", work(&options));

@@ -1,6 +1,7 @@
 #include "tools/rig/options.h"
 
 #include "core/command_line.h"
+#include "core/help.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -200,4 +201,9 @@ enum dig_status dig_rig_options_parse(const int argc, char *argv[],
         *options = result;
     }
     return status;
+}
+
+void dig_rig_options_refuse(const char *const word, const struct dig_error *const error)
+{
+    dig_help_refuse(&program, word, error->text, stderr);
 }

@@ -48,4 +48,7 @@ DIG_MUST_CHECK enum dig_status dig_rig_options_parse(int argc, char *argv[],
                                                      struct dig_rig_options *options,
                                                      struct dig_error       *error);
 
+/// What is wrong with the command line, whose first word is word, to stderr.
+void dig_rig_options_refuse(const char *word, const struct dig_error *error);
+
 #endif // DIG_TOOLS_RIG_OPTIONS_H
