@@ -180,3 +180,18 @@ enum dig_status dig_scene_similar(const struct dig_scene *const scene,
     }
     return status;
 }
+
+enum dig_status dig_bucket_similar(const struct dig_machine *const   machine,
+                                   const struct dig_curve_set *const set,
+                                   struct dig_error *const           error)
+{
+    assert(machine != NULL && set != NULL);
+    const double shape = machine->bucket_width_m / machine->link[DIG_JOINT_BUCKET].length_m;
+    const double scene = set->bucket_width_m / set->tooth_m;
+    return is_close(shape, scene, scene)
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "scene \"%s\" has a bucket %.3f times as wide as long, machine "
+                               "\"%s\" one %.3f times; expected the same shape within %.0f %%",
+                               set->scene_name, scene, machine->name, shape, 100.0 * DIG_SIMILAR);
+}

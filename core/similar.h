@@ -5,6 +5,8 @@
 #ifndef DIG_CORE_SIMILAR_H
 #define DIG_CORE_SIMILAR_H
 
+#include "core/curve.h"
+#include "core/machine.h"
 #include "core/scene.h"
 
 /// Shapes farther apart than this after scaling are two.
@@ -26,5 +28,11 @@ double dig_scene_scale(const struct dig_scene *scene, const struct dig_scene *ot
 DIG_MUST_CHECK enum dig_status dig_scene_similar(const struct dig_scene *scene,
                                                  const struct dig_scene *other,
                                                  struct dig_error       *error);
+
+/// DIG_EINVAL unless the machine's bucket is as wide over its length as that of the set's scene,
+/// within DIG_SIMILAR; *error names both.
+DIG_MUST_CHECK enum dig_status dig_bucket_similar(const struct dig_machine   *machine,
+                                                  const struct dig_curve_set *set,
+                                                  struct dig_error           *error);
 
 #endif // DIG_CORE_SIMILAR_H

@@ -1,6 +1,7 @@
 // digreport: reports a run of the daemon, or a shift, from LCM logs.
 
 #include "closed_loop/report/report.h"
+#include "core/similar.h"
 #include "core/streams.h"
 #include "estimator/wrench/correction.h"
 #include "files/machine_yaml.h"
@@ -15,6 +16,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // What the daemon had: machine, table and, where it ran with one, the model, by which the digs are
 // measured again.
@@ -25,12 +27,28 @@ struct loaded {
     bool                  corrects;
 };
 
+// Scale and curves hold for a bucket of the table's shape alone.
+static enum dig_status check_bucket(const struct digreport_options *const options,
+                                    const struct dig_machine *const       machine,
+                                    const struct dig_curve_set *const     set,
+                                    struct dig_error *const               error)
+{
+    struct dig_error      why    = { "" };
+    const enum dig_status status = dig_bucket_similar(machine, set, &why);
+    return status == DIG_OK ? DIG_OK
+                            : dig_error_set(error, status, "%s does not fit %s: %s",
+                                            options->machine, options->table, why.text);
+}
+
 static enum dig_status load(const struct digreport_options *const options, struct loaded *const had,
                             struct dig_error *const error)
 {
     enum dig_status status = dig_machine_read(options->machine, &had->machine, error);
     if (status == DIG_OK) {
         status = dig_table_load(options->table, &had->set, error);
+    }
+    if (status == DIG_OK) {
+        status = check_bucket(options, &had->machine, had->set, error);
     }
     if (status == DIG_OK && options->model != NULL) {
         status = dig_load_model(options->model, options->table, &had->machine, had->set,
@@ -154,10 +172,18 @@ static enum dig_status report_shift(const struct digreport_options *const option
         status = dig_table_load(options->table, &set, error);
     }
     if (status == DIG_OK && set != NULL) {
+        status = check_bucket(options, &machine, set, error);
         digreport_shift_begin(&shift, machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
     }
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
         status = digreport_shift_log(&shift, options->log[i], error);
+    }
+    if (status == DIG_OK && set != NULL && shift.scene_hash[0] != '\0' &&
+        strcmp(shift.scene_hash, set->scene_hash) != 0) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%s is of scene %.12s…, the daemon of the log predicted from scene "
+                               "%.12s…, expected one scene",
+                               options->table, set->scene_hash, shift.scene_hash);
     }
     status = digreport_input(status);
     if (status == DIG_OK) {

@@ -1,5 +1,6 @@
 #include "firmware_host/config/load.h"
 
+#include "core/similar.h"
 #include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
@@ -8,14 +9,13 @@
 #include "tables/load.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 // The table must be of the scene asked for, and of a bucket of the machine's shape: otherwise its
 // curves do not apply.
 static enum dig_status check_scene(const char *const path, const struct dig_config *const config,
-                                   const struct dig_machine *const   machine_read,
+                                   const struct dig_machine *const   machine,
                                    const struct dig_curve_set *const set,
                                    struct dig_error *const           error)
 {
@@ -26,15 +26,9 @@ static enum dig_status check_scene(const char *const path, const struct dig_conf
                                "scene: \"%s\", but %s is of scene \"%s\" (%s); expected the same",
                                want, config->table.text, set->scene_name, set->scene_hash);
     }
-    const double machine =
-        machine_read->bucket_width_m / machine_read->link[DIG_JOINT_BUCKET].length_m;
-    const double scene = set->bucket_width_m / set->tooth_m;
-    if (!(fabs(machine / scene - 1.0) <= DIG_SHAPE_TOLERANCE)) {
-        return dig_yaml_refuse(
-            path, error,
-            "table: scene \"%s\" has a bucket %.3f times as wide as long, machine \"%s\" one %.3f "
-            "times; expected the same shape within %.0f %%",
-            set->scene_name, scene, machine_read->name, machine, 100.0 * DIG_SHAPE_TOLERANCE);
+    struct dig_error why = { "" };
+    if (dig_bucket_similar(machine, set, &why) != DIG_OK) {
+        return dig_yaml_refuse(path, error, "table: %s", why.text);
     }
     for (size_t i = 0; i < config->identify_trajectories; i++) {
         if (dig_curve_set_find(set, config->identify_trajectory[i]) < 0) {

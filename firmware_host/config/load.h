@@ -9,9 +9,6 @@
 #include "firmware_host/bus/signal_map.h"
 #include "firmware_host/config/config.h"
 
-/// A machine's and a scene's bucket are of one shape when width / length agree within this.
-#define DIG_SHAPE_TOLERANCE 0.05
-
 struct dig_loaded {
     struct dig_config            config;
     struct dig_machine           machine;

@@ -241,3 +241,23 @@ TEST(what_is_in_the_bed_is_left_to_the_trace)
     s.packing.settle_s     = 3.0;
     expect_similar(&s);
 }
+
+TEST(a_machines_bucket_has_the_shape_of_the_tables)
+{
+    static struct dig_curve_set set         = { .scene_name     = "rig",
+                                                .tooth_m        = 0.09,
+                                                .bucket_width_m = 0.07 };
+    struct dig_machine          machine     = { .name = "m" };
+    struct dig_error            error       = { "" };
+    const double                width_m[]   = { 0.777, 0.74, 0.815, 0.73, 0.82, (double)NAN };
+    machine.link[DIG_JOINT_BUCKET].length_m = 1.0;
+    for (size_t i = 0; i < sizeof width_m / sizeof width_m[0]; i++) {
+        machine.bucket_width_m = width_m[i];
+        assert_int_equal(dig_bucket_similar(&machine, &set, &error), i < 3 ? DIG_OK : DIG_EINVAL);
+    }
+    machine.bucket_width_m = 0.9;
+    assert_int_equal(dig_bucket_similar(&machine, &set, &error), DIG_EINVAL);
+    assert_string_equal(error.text,
+                        "scene \"rig\" has a bucket 0.778 times as wide as long, machine "
+                        "\"m\" one 0.900 times; expected the same shape within 5 %");
+}

@@ -113,6 +113,24 @@ TEST_WITH(a_log_that_is_none_or_damaged_is_refused, fresh, NULL)
     free(day);
 }
 
+TEST_WITH(the_last_health_says_by_what_scene_was_predicted, fresh, NULL)
+{
+    static char old[] = "0123abcd", now[] = "4567abcd",
+                hash_too_long[] =
+                    "0123456789012345678901234567890123456789012345678901234567890123456789";
+    char *const       said[] = { no_text, old, now, no_text, hash_too_long };
+    const char *const kept[] = { "", old, now, now, hash_too_long };
+    for (size_t i = 0; i < sizeof said / sizeof said[0]; i++) {
+        lcm_eventlog_t *const log = begin("table.lcm");
+        digsight_health_t     h   = healthy();
+        h.table                   = said[i];
+        log_health(log, "DIGSIGHT_HEALTH", START_us, &h);
+        lcm_eventlog_destroy(log);
+        read_log("table.lcm");
+        assert_int_equal(strncmp(shift.scene_hash, kept[i], 64), 0);
+    }
+}
+
 static int finish_all(void **state)
 {
     digreport_shift_finish(&shift);

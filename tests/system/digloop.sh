@@ -182,6 +182,10 @@ check "a depth off the table is no prediction" refuses "scrape, depth 1.9, attac
 check "a table that was dug plainly alone has none" refuses "off the table" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --depth 1.2
 
+shift_of() { "$BIN/digreport" shift tests/data/formats/daemon.lcm --table tables/product.sqlite --machine "$@"; }
+check "digreport shift refuses a table of another scene than the log's" refuses "product.sqlite" "predicted from scene" -- \
+    shift_of config/machines/zx120.yaml
+check "digreport refuses a machine whose bucket has another shape" refuses "wide.yaml" "same shape" -- shift_of "$work/wide.yaml"
 check "digreport without a log is bad usage" refuses "NAME=LOG.lcm" -- "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml
 check "a truth that is no gravel is named" refuses "--truth" "expected FRICTION" -- \
     "$BIN/digreport" --table "$table" --machine config/machines/zx200_trench.yaml --truth 1,2 "a=b"

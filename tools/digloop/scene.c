@@ -6,7 +6,6 @@
 #include "tables/scene.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -60,13 +59,9 @@ enum dig_status digloop_check_bucket(const struct digloop_job *const job, const 
                                      struct dig_error *const         error)
 {
     assert(job != NULL && file != NULL && machine != NULL);
-    const double shape = machine->bucket_width_m / machine->link[DIG_JOINT_BUCKET].length_m;
-    const double scene = job->set->bucket_width_m / job->set->tooth_m;
-    return fabs(shape / scene - 1.0) <= DIG_SIMILAR
+    struct dig_error why = { "" };
+    return dig_bucket_similar(machine, job->set, &why) == DIG_OK
                ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL,
-                               "%s: a bucket %.3f times as wide as long, that of scene \"%s\" in "
-                               "%s is %.3f times; expected the same shape within %.0f %%",
-                               file, shape, job->set->scene_name, job->options->table, scene,
-                               100.0 * DIG_SIMILAR);
+               : dig_error_set(error, DIG_EINVAL, "%s does not fit %s: %s", file,
+                               job->options->table, why.text);
 }

@@ -216,6 +216,9 @@ static void take_health(void *const context, const int64_t time_us,
         add_event(shift, time_us, &reloaded, "", taken);
     }
     count_endings(shift, said);
+    if (said->table[0] != '\0') {
+        dig_text_copy(sizeof shift->scene_hash, shift->scene_hash, said->table);
+    }
     memcpy(shift->count, count, sizeof shift->count);
     shift->reloads    = said->reloads;
     shift->any_health = true;

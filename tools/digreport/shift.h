@@ -33,7 +33,8 @@ struct digreport_shift {
     int64_t first_us, last_us;
     int64_t messages, misread;        // misread: on our channels, not understood
     int64_t ended[DIGREPORT_ENDINGS]; // digs, by the daemon's counts
-    int64_t left_out; // digs, matches and events beyond the first ten thousand of each
+    int64_t left_out;       // digs, matches and events beyond the first ten thousand of each
+    char    scene_hash[65]; // of the daemon's table, as the last HEALTH says; "": none said it
     size_t  digs, gravels, events;
     struct digreport_dig      *dig;
     struct digreport_gravel   *gravel;
