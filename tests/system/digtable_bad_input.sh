@@ -73,6 +73,9 @@ refused "a grid's trajectory the scene lacks" 'g.yaml:5: trajectories\[0\]: "wal
 changed 's/vz_mps: -0.1/vz_mps: -0.3/' $scene s.yaml
 changed 's/^packings: 2/packings: 2\ndepth: [1, 2.5]/' $grid g.yaml
 refused "a depth that leaves the box" 'grid, depth 2.5, attack 0 deg: trajectory scrape: at .* s the bucket is .* m outside box_m.z, expected a path' generate "$work/s.yaml" "$work/g.yaml" -o "$out"
+changed 's/vz_mps: -0.1/vz_mps: -2/' $scene deep.yaml
+refused "a trajectory that leaves the box, before a bed is poured" 'deep.yaml: trajectory scrape: at .* outside box_m.z, expected a path' generate "$work/deep.yaml" $grid -o "$out"
+refused "the same by dig" 'deep.yaml: trajectory scrape: at .* outside box_m.z' dig "$work/deep.yaml" "${dig[@]}" -o "$out"
 changed 's/start_pin_m: .*/start_pin_m: [0.3, 0.525]/' $scene low.yaml
 changed 's/^packings: 2/packings: 2\nattack_deg: [0, 45]/' $grid g.yaml
 refused "an attack that starts in the bed" 'grid, depth 1, attack 45 deg: trajectory scrape.*: the bucket starts .* m in the ground, expected it clear' generate "$work/low.yaml" "$work/g.yaml" -o "$out"

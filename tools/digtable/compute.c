@@ -130,7 +130,7 @@ static enum dig_status approach(const struct dig_scene *const     scene,
     struct dig_trajectory dug;
     enum dig_status       status =
         dig_approach_make(scene, dig_scene_find(scene, a->trajectory), &a->approach, &dug, error);
-    if (status == DIG_OK && !dig_approach_is_plain(&a->approach)) {
+    if (status == DIG_OK) {
         status = dig_input_checks_path(scene, &dug, error);
     }
     status = name_scene(a->positional[0], status, error);

@@ -133,6 +133,26 @@ struct dig_plan_point *dig_plan_points(const struct dig_grid *const grid, const 
     return point;
 }
 
+// Where a point is dug plainly, its trajectories stay in the box as the scene gives them.
+static enum dig_status check_plain(const char *const             scene_path,
+                                   const struct dig_scene *const scene,
+                                   const struct dig_plan *const plan, struct dig_error *const error)
+{
+    bool plain = false;
+    for (size_t i = 0; i < plan->points && !plain; i++) {
+        plain = dig_approach_is_plain(&plan->point[i].approach);
+    }
+    for (size_t i = 0; i < plan->trajectories && plain; i++) {
+        struct dig_error      why = { "" };
+        const enum dig_status status =
+            dig_input_checks_path(scene, &scene->trajectory[plan->trajectory[i]], &why);
+        if (status != DIG_OK) {
+            return dig_error_set(error, status, "%s: %s", scene_path, why.text);
+        }
+    }
+    return DIG_OK;
+}
+
 enum dig_status dig_plan_read(const char *const scene_path, const char *const grid_path,
                               const size_t packings, struct dig_scene *const scene,
                               struct dig_plan *const plan, struct dig_plan_point **const point,
@@ -157,9 +177,14 @@ enum dig_status dig_plan_read(const char *const scene_path, const char *const gr
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the grid", grid_path);
     }
     made.point = points;
-    *scene     = read;
-    *plan      = made;
-    *point     = points;
+    status     = check_plain(scene_path, &read, &made, error);
+    if (status != DIG_OK) {
+        free(points);
+        return status;
+    }
+    *scene = read;
+    *plan  = made;
+    *point = points;
     return DIG_OK;
 }
 

@@ -13,8 +13,8 @@
 struct dig_plan_point *dig_plan_points(const struct dig_grid *grid, size_t packings, size_t *count);
 
 /// Reads a scene and a grid into a plan in one part; plan->point is *point, which the caller frees.
-/// Refuses what dig_scene_read() and dig_grid_read() refuse, and a trajectory the scene lacks. All
-/// three are written on success only.
+/// Refuses what dig_scene_read() and dig_grid_read() refuse, a trajectory the scene lacks, and one
+/// that leaves the box. All three are written on success only.
 DIG_MUST_CHECK enum dig_status dig_plan_read(const char *scene_path, const char *grid_path,
                                              size_t packings, struct dig_scene *scene,
                                              struct dig_plan *plan, struct dig_plan_point **point,
