@@ -181,6 +181,20 @@ const struct dig_command *dig_options_read(const struct dig_program *const progr
     return skipped == 0 ? find_command(program, NULL, error) : command;
 }
 
+void dig_options_refuse(const struct dig_program *const program, const char *const word,
+                        const char *const wrong, FILE *const to)
+{
+    assert(program != NULL && wrong != NULL && to != NULL);
+    const char *command = "";
+    for (size_t i = 0; i < program->commands && word != NULL; i++) {
+        if (strcmp(program->command[i].name, word) == 0) {
+            command = word;
+        }
+    }
+    dig_text_print(to, "%s: %s\nTry %s%s%s --help.\n", program->self.name, wrong,
+                   program->self.name, command[0] != '\0' ? " " : "", command);
+}
+
 bool dig_number_read(const char *const text, const double least, const double most,
                      double *const value)
 {

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum dig_option_kind {
     DIG_OPTION_CALL,
@@ -69,6 +70,11 @@ struct dig_program {
 DIG_MUST_CHECK const struct dig_command *dig_options_read(const struct dig_program *program,
                                                           int argc, char *argv[], void *into,
                                                           struct dig_error *error);
+
+/// What is wrong with a command line, and where help stands: that of the command which word names,
+/// argv[1], else the program's.
+void dig_options_refuse(const struct dig_program *program, const char *word, const char *wrong,
+                        FILE *to);
 
 /// A number, all of text, from least to most. False leaves *value; NaN is never in the range.
 bool dig_number_read(const char *text, double least, double most, double *value);

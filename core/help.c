@@ -1,7 +1,5 @@
 #include "core/help.h"
 
-#include "core/text.h"
-
 #include <assert.h>
 #include <stdbool.h>
 #include <string.h>
@@ -122,18 +120,4 @@ void dig_help_print(const struct dig_program *const program,
     put_lines(to, "  ", "  ", c->examples);
     (void)fputs("\nExit status:\n", to);
     put_lines(to, "  ", "  ", program->exit_status);
-}
-
-void dig_help_refuse(const struct dig_program *const program, const char *const word,
-                     const char *const wrong, FILE *const to)
-{
-    assert(program != NULL && wrong != NULL && to != NULL);
-    const char *command = "";
-    for (size_t i = 0; i < program->commands && word != NULL; i++) {
-        if (strcmp(program->command[i].name, word) == 0) {
-            command = word;
-        }
-    }
-    dig_text_print(to, "%s: %s\nTry %s%s%s --help.\n", program->self.name, wrong,
-                   program->self.name, command[0] != '\0' ? " " : "", command);
 }

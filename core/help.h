@@ -14,9 +14,4 @@ bool dig_option_belongs(const struct dig_option *option, const struct dig_comman
 /// most 79 columns, but for what does not break. help2man reads it.
 void dig_help_print(const struct dig_program *program, const struct dig_command *command, FILE *to);
 
-/// What is wrong with a command line, and where help stands: that of the command which word names,
-/// argv[1], else the program's.
-void dig_help_refuse(const struct dig_program *program, const char *word, const char *wrong,
-                     FILE *to);
-
 #endif // DIG_CORE_HELP_H

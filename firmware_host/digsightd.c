@@ -20,7 +20,8 @@ struct options {
 #define INTO(field) DIG_INTO(struct options, field)
 
 static const struct dig_option known[] = {
-    { "config", "FILE", NULL, "the configuration, YAML", INTO(config), .letter = 'c' },
+    { "config", "CONFIG.yaml", NULL, "what is read, and where: docs/formats/daemon.md",
+      INTO(config), .letter = 'c' },
     { "check", NULL, NULL, "load everything the configuration names, say what was found, exit",
       INTO(check) },
     { "json", NULL, NULL, "say that as JSON; with --check", INTO(json) },
@@ -37,7 +38,7 @@ static const struct dig_program program = {
                             "3 and 4 are used. Its output is advice.\n\n"
                             "Channels: DIGSIGHT_SAMPLE, DIGSIGHT_ESTIMATE, DIGSIGHT_MATCH, "
                             "DIGSIGHT_PREDICTION, DIGSIGHT_HEALTH. SIGTERM and SIGINT end it cleanly; SIGHUP "
-                            "takes the table that the configuration names then, between two digs.",
+                            "takes the table and the model that the configuration names then, between two digs.",
                      "digsightd -c config/digsightd.yaml --check\n"
                             "digsightd -c config/digsightd_can.yaml\n"
                             "lcm-logger --lcm-url='udpm://239.255.76.67:7667?ttl=0' dig.lcm\n" },

@@ -70,23 +70,3 @@ TEST(help_of_a_program_lists_its_commands)
                 "Exit status:\n"
                 "  0  done\n");
 }
-
-static void assert_refuses(const char *const word, const char *const expected)
-{
-    char       *text = NULL;
-    size_t      size = 0;
-    FILE *const to   = open_memstream(&text, &size);
-    assert_non_null(to);
-    dig_help_refuse(&coffee, word, "no cup", to);
-    assert_int_equal(fclose(to), 0);
-    assert_string_equal(text, expected);
-    free(text);
-}
-
-TEST(who_is_refused_is_told_whose_help_to_read)
-{
-    assert_refuses("brew", "coffee: no cup\nTry coffee brew --help.\n");
-    assert_refuses("brewer", "coffee: no cup\nTry coffee --help.\n");
-    assert_refuses("--milk", "coffee: no cup\nTry coffee --help.\n");
-    assert_refuses(NULL, "coffee: no cup\nTry coffee --help.\n");
-}

@@ -150,7 +150,7 @@ check "recordings of two trajectories are not pooled" \
 awk -F, -v OFS=, 'NR > 1 { $2 = 0.1; $3 = 0.1 + $1 } 1' "$reference"__simpleA.csv >"$work/lift.csv"
 check "a path that is none of the table's is refused with its distance" \
     refuses "lift.csv" "bucket lengths away" -- "$BIN/digloop" identify "$table" "$work/lift.csv"
-check "a misspelt trajectory is recognised" refuses "did you mean \"actual\"?" -- \
+check "a misspelt trajectory is answered with those there are" refuses "actaul: no such trajectory" "$table: simpleA, " -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actaul -o "$work/never"
 check "an unknown trajectory is named" refuses "nowhere" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory nowhere -o "$work/never"

@@ -1,8 +1,7 @@
 #include "tools/digloop/commands.h"
 
 #include "core/command_line.h"
-#include "core/did_you_mean.h"
-#include "core/help.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "files/text/whole.h"
 
@@ -24,7 +23,7 @@ static const struct dig_command commands[] = {
       "        --machine config/machines/zx200_trench.yaml\n"
       "digloop identify tables/product.sqlite day.lcm --trajectory simpleA \\\n"
       "        --machine config/machines/zx200_trench.yaml --json >id.json\n" },
-    { "predict", "TABLE --identified ID --trajectory NAME [OPTION]...",
+    { "predict", "TABLE --identified ID.json --trajectory NAME [OPTION]...",
       "Predicts what an identified gravel resists other digs with.",
       "At the table's scale, with --machine at that machine's, too: its forces are lambda^3, its "
       "moments lambda^4 times the table's, lambda being how many times its bucket is as long. Dug "
@@ -78,7 +77,8 @@ static const struct dig_option known[] = {
     { "model", "MODEL.json", " identify predict ",
       "table and machine with the effects that a trace has added", INTO(model) },
     { "moment-alone", NULL, " identify ", "leave the forces out", INTO(moment_alone) },
-    { "measured", "RECORDING", " predict ", "compare with digs measured", INTO(measured) },
+    { "measured", "RECORDING", " predict ", "compare with the digs measured in it",
+      INTO(measured) },
     { "depth", "F", " predict ",
       "factor on how far the tooth goes down in the first phase, 0.2 to 3 (default 1)",
       INTO(approach.depth), DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST },
@@ -146,6 +146,10 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
     while (strcmp(o->command, of[i].command) != 0) {
         i++;
     }
+    if (o->recordings > of[i].most && of[i].most <= 1) {
+        return dig_error_set(error, DIG_EINVAL, "%s: one argument too many",
+                             o->recording[of[i].most]);
+    }
     const bool named =
         strcmp(o->command, "predict") != 0 || (o->identified != NULL && o->trajectory != NULL);
     return named && o->recordings >= of[i].least && o->recordings <= of[i].most
@@ -178,7 +182,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
 
 int digloop_refuse(const char *const word, const struct dig_error *const error)
 {
-    dig_help_refuse(&program, word, error->text, stderr);
+    dig_options_refuse(&program, word, error->text, stderr);
     return 2;
 }
 
@@ -192,14 +196,14 @@ enum dig_status digloop_find_trajectory(const struct digloop_job *const job, int
 {
     const int found = dig_curve_set_find(job->set, job->options->trajectory);
     if (found < 0) {
-        char             text[DIG_GUESS_SIZE];
-        struct dig_guess guess = dig_guess(job->options->trajectory);
+        char names[256] = "";
         for (size_t t = 0; t < job->set->trajectories; t++) {
-            dig_guess_try(&guess, job->set->trajectory[t].name);
+            dig_text_add(sizeof names, names, "%s%s", t > 0 ? ", " : "",
+                         job->set->trajectory[t].name);
         }
-        return dig_error_set(error, DIG_EINVAL, "--trajectory %s: %s has no such trajectory%s",
-                             job->options->trajectory, job->options->table,
-                             dig_guess_text(&guess, "", text));
+        return dig_error_set(error, DIG_EINVAL,
+                             "--trajectory %s: no such trajectory, expected one of %s: %s",
+                             job->options->trajectory, job->options->table, names);
     }
     *trajectory = found;
     return DIG_OK;

@@ -2,7 +2,6 @@
 
 #include "core/command_line.h"
 #include "core/did_you_mean.h"
-#include "core/help.h"
 #include "files/text/whole.h"
 
 #include <getopt.h>
@@ -150,7 +149,7 @@ enum dig_status digreport_parse(const int argc, char *argv[],
 
 int digreport_refuse(const char *const word, const struct dig_error *const error)
 {
-    dig_help_refuse(&program, word, error->text, stderr);
+    dig_options_refuse(&program, word, error->text, stderr);
     return 2;
 }
 

@@ -1,6 +1,5 @@
 #include "tools/digtable/arguments.h"
 
-#include "core/help.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "files/job_plan.h"
@@ -164,8 +163,9 @@ static const struct dig_command commands[] = {
       "The curve is drawn in the terminal, unless --csv or --json asks for its numbers.",
       "digtable show tables/product.sqlite --friction .5 --rolling .5 \\\n"
       "         --density 2500 --trajectory actual\n"
-      "digtable show tables/product.sqlite 0 --channel Fx\n" },
-    { "import", "CURVES.csv --map MAP.yaml -o TABLE.sqlite",
+      "digtable show tables/product.sqlite 0 --channel Fx\n"
+      "digtable show tables/product.sqlite 0 --csv >curve.csv\n" },
+    { "import", "CURVES.csv --map MAP.yaml -o TABLE.sqlite [OPTION]...",
       "Adds digs that something else measured or computed to a table.",
       "The map says which column holds what.",
       "digtable import curves.csv --map curve_map.yaml -o measured.sqlite\n" },
@@ -174,10 +174,12 @@ static const struct dig_command commands[] = {
       "order.",
       "digtable merge my.sqlite part*.sqlite\n"
       "digtable merge my.sqlite my.sqlite.jobs/shards\n" },
-    { "seal", "TABLE.sqlite", "Seals a table of an older version.",
+    { "seal", "TABLE.sqlite [OPTION]...", "Seals a table of an older version.",
       "The table is checked, and shows a flipped bit from then on whenever it is read.",
       "digtable seal old.sqlite\n" },
     { "export", "TABLE.sqlite [OPTION]...", "Writes all curves of a table as CSV.", NULL,
+      "digtable export tables/product.sqlite -o curves.csv\n"
+      "digtable export tables/product_effects.sqlite --effects >effects.csv\n"
       "digtable export my.sqlite --runs -o runs.csv\n" },
     { "check", "TABLE.sqlite [OPTION]...",
       "Checks version, integrity, and every curve against the runs it was made of.", NULL,
@@ -186,21 +188,22 @@ static const struct dig_command commands[] = {
 };
 
 static const struct dig_option options[] = {
-    { "trajectory", "NAME", " dig show ",
-      "its name in the scene (show: the entry's first if not given)", INTO(trajectory) },
+    { "trajectory", "NAME", " dig ", "its name in the scene", INTO(trajectory) },
+    { "trajectory", "NAME", " show ", "its name in the scene (default: the entry's first)",
+      INTO(trajectory) },
     { "friction", "F", " dig show ", "friction of the gravel, 0 to 3",
       INTO(gravel[DIG_AXIS_FRICTION]), 0.0, 3.0 },
     { "rolling", "R", " dig show ", "rolling friction of the gravel, 0 to 3",
       INTO(gravel[DIG_AXIS_ROLLING]), 0.0, 3.0 },
-    { "density", "KGPM3", " dig show ", "density of the grains in kg/m3",
+    { "density", "KGPM3", " dig show ", "density of the grains in kg/m3, 100 to 20000",
       INTO(gravel[DIG_AXIS_DENSITY_kgpm3]), 100.0, 20000.0, "kg/m3" },
     { "depth", "F", " dig show ",
-      "factor on how far the tooth goes down in the first phase (default 1)", INTO(approach.depth),
-      DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST },
+      "factor on how far the tooth goes down in the first phase, 0.2 to 3 (default 1)",
+      INTO(approach.depth), DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST },
     { "attack-deg", "A", " dig show ",
-      "the bucket turned about its tooth, positive curls (default 0)", INTO(approach.attack_rad),
-      -45.0, 45.0, "deg" },
-    { "young", "PA", " dig ", "Young's modulus instead of the scene's", INTO(young_Pa), 1.0, 1e12,
+      "the bucket turned about its tooth, -45 to 45, positive curls (default 0)",
+      INTO(approach.attack_rad), -45.0, 45.0, "deg" },
+    { "young", "PA", " dig ", "Young's modulus (default: the scene's)", INTO(young_Pa), 1.0, 1e12,
       "Pa" },
     { "seed", "N", " dig ", "of the bed (default 1)", INTO(seed) },
     { "engine", "single|kernel|ode|cuda", " dig generate submit ",
@@ -214,23 +217,25 @@ static const struct dig_option options[] = {
       .letter = 'o' },
     { "output", "TABLE.sqlite", " generate import submit ", "the table to make or to go on with",
       INTO(output), .letter = 'o' },
-    { "output", "FILE.csv", " export ", "the file to write, not standard output", INTO(output),
-      .letter = 'o' },
+    { "output", "FILE.csv", " export ", "the file to write (default: standard output)",
+      INTO(output), .letter = 'o' },
     { "jobs", "N", " generate submit ", "digs at a time here (default: one a core)", INTO(workers),
       1, 4096, .letter = 'j' },
-    { "threads", "N", " dig generate ",
-      "of engines single and cuda in a bed of more than 30 000 grains (dig: one a core, generate: "
-      "1)",
+    { "threads", "N", " dig ",
+      "of engines single and cuda in a bed of more than 30000 grains (default: one a core)",
       INTO(threads), 1, 256 },
-    { "packings", "N", " generate submit ", "beds of each gravel, not the grid's number",
+    { "threads", "N", " generate ",
+      "of engines single and cuda in a bed of more than 30000 grains (default 1)", INTO(threads), 1,
+      256 },
+    { "packings", "N", " generate submit ", "beds of each gravel (default: the grid's number)",
       INTO(packings), 1, 1000 },
-    { "time-limit", "S", " generate ", "begin no dig after S seconds", INTO(time_limit_s), 0.0, 1e9,
-      "s" },
+    { "time-limit", "S", " generate ", "begin no dig after S seconds (default: no limit)",
+      INTO(time_limit_s), 0.0, 1e9, "s" },
     { "shard", "I/N", " generate ",
       "the I-th of N parts alone; `digtable merge` puts the parts together", .take = take_shard },
     { "slurm", NULL, " submit ", "submit to Slurm, do not compute here", INTO(slurm) },
-    { "tasks", "N", " submit ", "shards, each one task (default: a bed each, 1000)", INTO(tasks), 1,
-      DIG_JOB_TASKS_MAX },
+    { "tasks", "N", " submit ", "shards, each one task (default: one a bed, at most 1000)",
+      INTO(tasks), 1, DIG_JOB_TASKS_MAX },
     { "time", "T", " submit ", "time limit of a task, as sbatch takes it", .take = take_time },
     { "partition", "P", " submit ", "where Slurm is to run them", .take = take_partition },
     { "sbatch-arg", "A", " submit ", "one more argument for sbatch; repeatable",
@@ -241,9 +246,10 @@ static const struct dig_option options[] = {
     { "channel", "My|Fx|Fz|carried", " show ", "what to draw (default My)", .take = take_channel },
     { "csv", NULL, " show ", "the curve as CSV", INTO(csv) },
     { "json", NULL, " list check show status ", "the result as JSON", INTO(json) },
-    { "runs", NULL, " export ", "all runs behind the curves, instead", INTO(runs) },
-    { "effects", NULL, " export ", "those dug with an effect, instead", INTO(effects) },
-    { "complete", NULL, " check ", "holes in the grid and missing packings fail, too",
+    { "runs", NULL, " export ", "the runs behind the curves, not the curves", INTO(runs) },
+    { "effects", NULL, " export ", "the curves dug with an effect, not the plain ones",
+      INTO(effects) },
+    { "complete", NULL, " check ", "end with 1 where the grid has holes or packings are missing",
       INTO(complete) },
 };
 
@@ -268,7 +274,7 @@ __attribute__((format(printf, 2, 3))) int dig_cli_bad_usage(const struct dig_arg
     va_start(args, format);
     (void)vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    dig_help_refuse(&program, a->word, text, stderr);
+    dig_options_refuse(&program, a->word, text, stderr);
     return EXIT_BAD_INPUT;
 }
 

@@ -1,6 +1,5 @@
 // digtable list, check, show and export.
 
-#include "core/did_you_mean.h"
 #include "core/table_step.h"
 #include "core/text.h"
 #include "files/text/whole.h"
@@ -169,11 +168,29 @@ static size_t find_entry(const struct dig_arguments *const a, const struct dig_c
     return e;
 }
 
+static int no_entry(const struct dig_arguments *const a, const struct dig_curve_set *const set)
+{
+    if (a->positionals == 2) {
+        return dig_cli_bad_usage(a, "%s: no such entry in %s, expected 0 to %zu", a->positional[1],
+                                 a->positional[0], dig_listed_count(set) - 1);
+    }
+    char known[512] = "";
+    for (int i = 0; i < DIG_AXES; i++) {
+        dig_text_add(sizeof known, known, "%s%s", i > 0 ? "; " : "",
+                     dig_axis_name((enum dig_axis)i));
+        for (size_t k = 0; k < set->axis_count[i]; k++) {
+            dig_text_add(sizeof known, known, " %g", set->axis[i][k]);
+        }
+    }
+    return dig_cli_bad_usage(a, "%s: no such entry, expected one that `digtable list` shows, of %s",
+                             a->positional[0], known);
+}
+
 static int show(const struct dig_arguments *const a, const struct dig_curve_set *const set)
 {
     const size_t entry = find_entry(a, set);
     if (entry >= dig_listed_count(set)) {
-        return dig_cli_bad_usage(a, "%s: no such entry, digtable list shows all", a->positional[0]);
+        return no_entry(a, set);
     }
     size_t trajectory = 0;
     while (trajectory < set->trajectories &&
@@ -182,15 +199,14 @@ static int show(const struct dig_arguments *const a, const struct dig_curve_set 
         trajectory++;
     }
     if (trajectory >= set->trajectories || dig_listed_at(set, entry, trajectory).packings == 0) {
-        char             text[DIG_GUESS_SIZE];
-        struct dig_guess guess = dig_guess(a->trajectory != NULL ? a->trajectory : "");
+        char known[256] = "";
         for (size_t t = 0; t < set->trajectories; t++) {
-            dig_guess_try(&guess, set->trajectory[t].name);
+            if (dig_listed_at(set, entry, t).packings > 0) {
+                dig_text_add(sizeof known, known, " %s", set->trajectory[t].name);
+            }
         }
-        return dig_cli_bad_usage(a, "%s: no such trajectory in this entry%s",
-                                 a->trajectory != NULL ? a->trajectory : a->positional[0],
-                                 guess.best != NULL ? dig_guess_text(&guess, "", text)
-                                                    : ", digtable list shows all");
+        return dig_cli_bad_usage(a, "%s: no such trajectory in this entry, expected one of:%s",
+                                 a->trajectory != NULL ? a->trajectory : a->positional[0], known);
     }
     if (a->csv) {
         dig_export_curve_csv(set, entry, trajectory, stdout);

@@ -1,7 +1,6 @@
 #include "tools/rig/options.h"
 
 #include "core/command_line.h"
-#include "core/help.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -81,7 +80,7 @@ static const struct dig_option known[] = {
     { "machine", "M.yaml", NULL, "the machine (config/machines)", INTO(machine) },
     { "output", "OUT.csv", " record air ", "machine recording to write", INTO(out), .letter = 'o' },
     { "can", "IFACE", " serve ", "CAN frames in the ZX200 layout", INTO(can) },
-    { "modbus-tcp", "HOST:PORT", " serve ",
+    { "modbus-tcp", "IPV4:PORT", " serve ",
       "Modbus TCP server (port 0: any free one, told on stderr)", INTO(tcp) },
     { "modbus-rtu", "DEV[:BAUD]", " serve ", "Modbus RTU slave 1 (default 115200 baud, 8N1)",
       INTO(rtu) },
@@ -106,12 +105,12 @@ static const struct dig_option known[] = {
       INTO(truth) },
     { "no-quantisation", NULL, " record air ",
       "numbers as they are, not in steps of the machine's bus", INTO(quantise), .clears = true },
-    { "exact", NULL, " record air ", "--no-noise --no-quantisation", .take = take_exact },
+    { "exact", NULL, " record air ", "as --no-noise --no-quantisation", .take = take_exact },
     { "tooth-m", "L", " record serve ",
       "pin to tooth of the recordings' bucket (default 0.09, the rig)", INTO(track.scene_tooth_m),
       1e-3, 10.0, "m" },
     { "scene", "SCENE.yaml", " record serve ",
-      "take that from a scene instead (a campaign names its own)", INTO(scene) },
+      "the scene that they were dug in tells it (a campaign names its own)", INTO(scene) },
     { "pin-start", "X,Z", " record serve ",
       "bucket pin at the first contact, from the boom foot (default: the place that leaves the "
       "machine most room)",
@@ -205,5 +204,5 @@ enum dig_status dig_rig_options_parse(const int argc, char *argv[],
 
 void dig_rig_options_refuse(const char *const word, const struct dig_error *const error)
 {
-    dig_help_refuse(&program, word, error->text, stderr);
+    dig_options_refuse(&program, word, error->text, stderr);
 }

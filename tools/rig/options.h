@@ -33,7 +33,7 @@ struct dig_rig_options {
     // serve; NULL: not on that bus
     const char           *can;
     bool                  can_sealed; // frames carry a counter and a checksum
-    const char           *tcp;        // HOST:PORT
+    const char           *tcp;        // IPV4:PORT
     const char           *rtu;        // DEVICE[:BAUD]
     double                speed;
     bool                  loop;

@@ -75,7 +75,7 @@ enum dig_status dig_rig_fault_add(const char *const text, struct dig_rig_faults 
     }
     return dig_error_set(
         error, DIG_EINVAL,
-        "fault: \"%s\", expected not-available, nan, frozen, missing, "
+        "--fault %s: expected not-available, nan, frozen, missing, "
         "out-of-range, stuck-pressures, stuck-angles, far, far-silent, or drop, duplicate, "
         "reorder, corrupt, exception with =SHARE, or delay, slow with =SECONDS; "
         "then @SECONDS[:DURATION]",

@@ -192,8 +192,8 @@ enum dig_status dig_rig_modbus_start_tcp(const char *const           address,
     long           port = 0;
     struct in_addr ip;
     if (!split(address, sizeof host, host, 0, 65535, &port) || inet_pton(AF_INET, host, &ip) != 1) {
-        return dig_error_set(error, DIG_EINVAL, "--modbus-tcp: \"%s\", expected IPv4-ADDRESS:PORT",
-                             address);
+        return dig_error_set(error, DIG_EINVAL,
+                             "--modbus-tcp %s: expected IPV4:PORT, as 127.0.0.1:1502", address);
     }
     struct dig_rig_modbus *const made = create(board, modbus_new_tcp(host, (int)port));
     if (made == NULL) {

@@ -24,7 +24,7 @@ struct dig_rig_requests {
     uint64_t clients;           // connections accepted; on RTU times the line was opened
 };
 
-/// Opens address (HOST:PORT, port 0 for any free one; or DEVICE[:BAUD], 8N1, default 115200) and
+/// Opens address (IPV4:PORT, port 0 for any free one; or DEVICE[:BAUD], 8N1, default 115200) and
 /// serves it on a thread of its own until the board is stopped. where says what was opened, for
 /// people, with the real port. The board must outlive the server. DIG_EINVAL: an address that is
 /// none. DIG_EIO: it cannot be opened.

@@ -24,17 +24,17 @@ static enum dig_status check(const struct dig_rig_track_options *const options,
                              struct dig_error *const                   error)
 {
     if (!(options->scene_tooth_m > 0.0 && isfinite(options->scene_tooth_m))) {
-        return dig_error_set(error, DIG_EINVAL, "tooth-m: %g, expected > 0",
+        return dig_error_set(error, DIG_EINVAL, "--tooth-m %g: expected metres, > 0",
                              options->scene_tooth_m);
     }
     const double every = 1.0 / (DIG_RIG_STEP_s * options->rate_Hz);
     if (!(every >= 1.0 && every <= 20.0 && fabs(every - round(every)) < 1e-9)) {
         return dig_error_set(error, DIG_EINVAL,
-                             "rate: %g Hz, expected a divisor of 1000 from 50 to 1000",
+                             "--rate %g: in Hz, expected a divisor of 1000 from 50 to 1000",
                              options->rate_Hz);
     }
     if (options->placed && !(isfinite(options->pin_X_m) && isfinite(options->pin_Z_m))) {
-        return dig_error_set(error, DIG_EINVAL, "pin-start: expected two finite numbers");
+        return dig_error_set(error, DIG_EINVAL, "--pin-start: expected two finite numbers");
     }
     return DIG_OK;
 }
