@@ -140,6 +140,16 @@ enum dig_status dig_yaml_refuse_checked(const char *const path, const enum dig_s
     return dig_error_set(error, status, "%s:%d: %.400s", path, line > 0 ? line : 1, what.text);
 }
 
+enum dig_status dig_yaml_tell_namer(const char *const path, const char *const key,
+                                    const enum dig_status status, struct dig_error *const error)
+{
+    if (status == DIG_EIO && error != NULL) {
+        const struct dig_error found = *error;
+        (void)dig_yaml_refuse(path, error, "%s: %.350s", key, found.text);
+    }
+    return status;
+}
+
 enum dig_status dig_yaml_check_ranges(const char *const path, const char *const at,
                                       const size_t count, const struct dig_yaml_range range[],
                                       struct dig_error *const error)

@@ -40,4 +40,9 @@ DIG_MUST_CHECK enum dig_status dig_yaml_check_ranges(const char *path, const cha
 enum dig_status dig_yaml_refuse_checked(const char *path, enum dig_status status,
                                         const struct dig_error *found, struct dig_error *error);
 
+/// Of a file that could not be read, which is DIG_EIO: *error begins with FILE:LINE: KEY: of the
+/// key that names it. Returns status, and leaves *error with any other.
+enum dig_status dig_yaml_tell_namer(const char *path, const char *key, enum dig_status status,
+                                    struct dig_error *error);
+
 #endif // DIG_FILES_YAML_YAML_H

@@ -40,13 +40,17 @@ static enum dig_status check_scene(const char *const path, const struct dig_conf
     return DIG_OK;
 }
 
-static enum dig_status load_map(struct dig_loaded *const l, struct dig_error *const error)
+static enum dig_status load_map(const char *const path, struct dig_loaded *const l,
+                                struct dig_error *const error)
 {
     struct dig_dbc  dbc    = { 0 };
     const bool      can    = l->config.kind == DIG_INPUT_CAN;
     enum dig_status status = can ? dig_dbc_read(l->config.dbc.text, &dbc, error) : DIG_OK;
+    status                 = dig_yaml_tell_namer(path, "input.can.dbc", status, error);
     if (status == DIG_OK) {
         status = dig_signal_map_read(l->config.map.text, can ? &dbc : NULL, &l->map, error);
+        status =
+            dig_yaml_tell_namer(path, can ? "input.can.map" : "input.modbus.map", status, error);
     }
     if (status == DIG_OK && can != (l->map.kind == DIG_MAP_CAN)) {
         status = dig_yaml_refuse(l->config.map.text, error, "kind: %s, expected %s for this input",
@@ -56,11 +60,14 @@ static enum dig_status load_map(struct dig_loaded *const l, struct dig_error *co
     return status;
 }
 
-static enum dig_status load_recording(struct dig_loaded *const l, struct dig_error *const error)
+static enum dig_status load_recording(const char *const path, struct dig_loaded *const l,
+                                      struct dig_error *const error)
 {
-    const char *const path = l->config.replay.text;
-    return dig_lcm_log_is(path) ? dig_lcm_log_read(path, &l->recording, error)
-                                : dig_machine_recording_read(path, &l->recording, error);
+    const char *const     file   = l->config.replay.text;
+    const enum dig_status status = dig_lcm_log_is(file)
+                                       ? dig_lcm_log_read(file, &l->recording, error)
+                                       : dig_machine_recording_read(file, &l->recording, error);
+    return dig_yaml_tell_namer(path, "input.replay.file", status, error);
 }
 
 // A signal is measured when it has an entry in the map, or a value anywhere in the recording.
@@ -88,6 +95,27 @@ static enum dig_status check_sensing(const char *const path, const struct dig_lo
         senses ? "signals of a force sensor" : "none of its signals");
 }
 
+// The table, checked, with the model's effects; *set is loaded, or NULL, whatever the status.
+static enum dig_status load_table(const char *const path, const struct dig_config *const config,
+                                  const struct dig_machine *const machine,
+                                  struct dig_curve_set **const    set,
+                                  struct dig_correction *const correction, bool *const corrects,
+                                  struct dig_error *const error)
+{
+    const char *const model  = config->model.text;
+    enum dig_status   status = dig_table_load(config->table.text, set, error);
+    status                   = dig_yaml_tell_namer(path, "table", status, error);
+    if (status == DIG_OK) {
+        status = check_scene(path, config, machine, *set, error);
+    }
+    if (status == DIG_OK && model[0] != '\0') {
+        status =
+            dig_load_model(model, config->table.text, machine, *set, correction, corrects, error);
+        status = dig_yaml_tell_namer(path, "model", status, error);
+    }
+    return status;
+}
+
 enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded,
                          struct dig_error *const error)
 {
@@ -96,24 +124,18 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
     enum dig_status   status = dig_config_read(path, &l.config, error);
     if (status == DIG_OK) {
         status = dig_machine_read(l.config.machine.text, &l.machine, error);
+        status = dig_yaml_tell_namer(path, "machine", status, error);
     }
     if (status == DIG_OK) {
-        status =
-            l.config.kind == DIG_INPUT_REPLAY ? load_recording(&l, error) : load_map(&l, error);
+        status = l.config.kind == DIG_INPUT_REPLAY ? load_recording(path, &l, error)
+                                                   : load_map(path, &l, error);
     }
     if (status == DIG_OK) {
         find_measured(&l);
         status = check_sensing(path, &l, error);
     }
     if (status == DIG_OK) {
-        status = dig_table_load(l.config.table.text, &l.set, error);
-    }
-    if (status == DIG_OK) {
-        status = check_scene(path, &l.config, &l.machine, l.set, error);
-    }
-    if (status == DIG_OK && l.config.model.text[0] != '\0') {
-        status = dig_load_model(l.config.model.text, l.config.table.text, &l.machine, l.set,
-                                &l.correction, &l.corrects, error);
+        status = load_table(path, &l.config, &l.machine, &l.set, &l.correction, &l.corrects, error);
     }
     if (status != DIG_OK) {
         dig_loaded_finish(&l);
@@ -135,11 +157,8 @@ enum dig_status dig_load_table(const char *const path, const struct dig_machine 
     bool                         corrects = false;
     struct dig_curve_set        *loaded   = NULL;
     enum dig_status              status   = dig_config_read(path, &config, error);
-    status = status == DIG_OK ? dig_table_load(config.table.text, &loaded, error) : status;
-    status = status == DIG_OK ? check_scene(path, &config, machine, loaded, error) : status;
-    if (status == DIG_OK && config.model.text[0] != '\0') {
-        status = dig_load_model(config.model.text, config.table.text, machine, loaded, &correction,
-                                &corrects, error);
+    if (status == DIG_OK) {
+        status = load_table(path, &config, machine, &loaded, &correction, &corrects, error);
     }
     if (status == DIG_OK) {
         status = dig_correction_apply(machine, corrects ? &correction : NULL, &made);

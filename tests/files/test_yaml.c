@@ -212,6 +212,18 @@ TEST(a_refusal_after_loading_names_the_nearest_line)
     assert_contains(error.text, "good.yaml:9: inner.weight_kg: 1, expected > 1");
 }
 
+TEST(a_file_that_cannot_be_read_is_told_with_the_line_that_names_it)
+{
+    const char *const path  = scratch_write("good.yaml", GOOD);
+    struct dig_error  error = { "x.csv: No such file" };
+    assert_int_equal(dig_yaml_tell_namer(path, "parts[0].name", DIG_OK, &error), DIG_OK);
+    assert_int_equal(dig_yaml_tell_namer(path, "parts[0].name", DIG_EINVAL, &error), DIG_EINVAL);
+    assert_string_equal(error.text, "x.csv: No such file");
+    assert_int_equal(dig_yaml_tell_namer(path, "parts[0].name", DIG_EIO, NULL), DIG_EIO);
+    assert_refused(dig_yaml_tell_namer(path, "parts[0].name", DIG_EIO, &error), error, DIG_EIO,
+                   "good.yaml:11: parts[0].name: x.csv: No such file");
+}
+
 // Whatever the bytes, the answer is a struct or a refusal. Each byte of a good file is replaced by
 // bytes that mean something to YAML, and the file is cut at each length.
 TEST(damaged_bytes_never_do_worse_than_a_refusal)

@@ -151,7 +151,7 @@ other_scene elsewhere 'trajectory "actual"'
 sed 's/bucket_width_m: .*/bucket_width_m: 1.0/' config/machines/zx200_trench.yaml >"$work/wide.yaml"
 campaign wide rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
 echo "machine: ../wide.yaml" >>"$work/wide/campaign.yaml"
-check "a machine whose bucket is of another shape is refused" refuses "wide.yaml: a bucket" "scene \"rig\" in $table" -- traced "$work/wide"
+check "a machine whose bucket is of another shape is refused" refuses "wide.yaml does not fit" "fit $table: scene \"rig\"" -- traced "$work/wide"
 
 campaign mixed rig "$A$S" simpleA identify "$A$R" actual fit "$PWD/tests/data/formats/machine_recording.csv" actual fit
 check "recordings of a rig and of a machine are not mixed" \
@@ -193,14 +193,14 @@ check "a dig along another trajectory is named" refuses "swapped/campaign.yaml:3
 campaign nowhere rig "$A$S" sideways identify "$A$R" actual fit
 check "a trajectory that the table lacks is named" refuses "nowhere/campaign.yaml:3: recordings[0].trajectory: \"sideways\", expected one of the table's: simpleA, simpleB, actual" -- traced "$work/nowhere"
 campaign gone rig none.csv simpleA identify "$A$R" actual fit
-check "a missing recording is named" refuses "gone/none.csv: No such file" -- traced "$work/gone"
+check "a missing recording is named" refuses "file: $work/gone/none.csv: No such file" "campaign.yaml:" -- traced "$work/gone"
 sed -i 1d "$work/gone/campaign.yaml"
 echo "scene: none.yaml" >>"$work/gone/campaign.yaml"
 check "so is a missing scene" refuses "gone/none.yaml: no such scene file" -- traced "$work/gone"
 campaign machine rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
 check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- traced "$work/machine"
 sed 's/^scene/machine: none.yaml\n&/' "$work/machine/campaign.yaml" >"$work/m" && mv "$work/m" "$work/machine/campaign.yaml"
-check "a machine that is not there is named" refuses "machine/none.yaml: No such file" -- traced "$work/machine"
+check "a machine that is not there is named" refuses "machine: $work/machine/none.yaml: No such file" "campaign.yaml:" -- traced "$work/machine"
 check "a folder without a campaign is named" refuses "$work/campaign.yaml: No such file" -- traced "$work"
 check "so is a folder that is not there" refuses "nothing/campaign.yaml: No such file" -- traced "$work/nothing"
 "$BIN/digloop" trace "$table" "$work/plain" --effects "$work/none.sqlite" >/dev/null 2>"$work/err"

@@ -24,6 +24,16 @@ static const char *yaml_of(const struct digloop_job *const job, char path[const 
     return path;
 }
 
+// A recording that cannot be read is told with the line that names it.
+static enum dig_status tell_recording(const struct digloop_job *const job, const size_t i,
+                                      const enum dig_status status, struct dig_error *const error)
+{
+    char yaml[DIG_CAMPAIGN_PATH];
+    char key[40];
+    (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
+    return dig_yaml_tell_namer(yaml_of(job, yaml), key, status, error);
+}
+
 static enum dig_status fill_heads(const struct digloop_job *const  job,
                                   const struct dig_campaign *const from,
                                   struct dig_measured measured[], struct dig_error *const error)
@@ -96,7 +106,8 @@ static enum dig_status measure_force(const struct digloop_job *const            
     struct dig_recording              recording = { 0 };
     struct dig_observed               o         = { .trajectory = 0 };
     struct dig_error                  why       = { "" };
-    enum dig_status                   status    = dig_recording_read(r->file, &recording, error);
+    enum dig_status                   status =
+        tell_recording(job, i, dig_recording_read(r->file, &recording, error), error);
     if (status == DIG_OK) {
         shrink(&recording, scale);
         status = dig_observe_dig(set, &recording, &o, &why);
@@ -144,7 +155,9 @@ static enum dig_status load_machine(const struct digloop_job *const  job,
     if (recording == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
+    char            yaml[DIG_CAMPAIGN_PATH];
     enum dig_status status = dig_machine_read(from->machine, &machine, error);
+    status                 = dig_yaml_tell_namer(yaml_of(job, yaml), "machine", status, error);
     if (status == DIG_OK && machine.sensor.fitted) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: a force sensor, expected a machine with cylinders or force "
@@ -157,7 +170,8 @@ static enum dig_status load_machine(const struct digloop_job *const  job,
     campaign->lambda = machine.link[DIG_JOINT_BUCKET].length_m / job->set->tooth_m;
     for (size_t i = 0; i < from->recordings && status == DIG_OK; i++) {
         const char *const file = from->recording[i].file;
-        status                 = digloop_read_machine(file, &machine, &recording[i], error);
+        status = tell_recording(job, i, digloop_read_machine(file, &machine, &recording[i], error),
+                                error);
     }
     if (status == DIG_OK) {
         status = dig_machine_side_create(&machine, job->set, from->recordings, recording,
