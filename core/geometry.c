@@ -44,6 +44,20 @@ static enum dig_status check_mass(const struct dig_machine *const machine, const
     return DIG_OK;
 }
 
+// min_deg and max_deg given in radians are a range of two or three degrees.
+static enum dig_status check_range(const struct dig_machine *const machine, const int joint,
+                                   struct dig_error *const error)
+{
+    static const double          least_deg = 10.0;
+    const struct dig_link *const link      = &machine->link[joint];
+    const double                 range_deg = (link->max_rad - link->min_rad) / DIG_RAD_PER_DEG;
+    return range_deg >= least_deg
+               ? DIG_OK
+               : dig_error_set(error, DIG_EINVAL,
+                               "%s.max_deg: %.3g degrees above min_deg, expected %g or more",
+                               dig_joint_name((enum dig_joint)joint), range_deg, least_deg);
+}
+
 static enum dig_status check_whole(const struct dig_machine *const machine,
                                    struct dig_error *const         error)
 {
@@ -191,6 +205,9 @@ enum dig_status dig_geometry_check(const struct dig_machine *const machine,
         return check_mass(machine, DIG_JOINT_BUCKET, error);
     }
     enum dig_status status = check_whole(machine, error);
+    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        status = check_range(machine, j, error);
+    }
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
         status = check_mass(machine, j, error);
     }

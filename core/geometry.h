@@ -20,6 +20,7 @@
 /// For a machine as its file says, after dig_machine_check(). DIG_EINVAL, with the key, what was
 /// found and what was expected in *error, for
 ///
+///   - limits of a joint less than ten degrees apart: they were given in radians
 ///   - a linkage that does not close somewhere between min_deg and max_deg
 ///   - a cylinder whose stroke, min_length_m to max_length_m, is less than half of that range. A
 ///     stop within the range is no fault: the machine then does not reach the end of it, and the

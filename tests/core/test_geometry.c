@@ -2,6 +2,7 @@
 
 #include "core/geometry.h"
 
+#include "core/units.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 
@@ -62,6 +63,9 @@ TEST(slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key)
     m                                 = good;
     m.link[DIG_JOINT_BUCKET].length_m = 900.0;
     is_refused(&m, "bucket.length_m: 900, expected at most twice the arm's, 5.78");
+    m                             = good;
+    m.link[DIG_JOINT_ARM].min_rad = m.link[DIG_JOINT_ARM].max_rad - 2.0 * DIG_RAD_PER_DEG;
+    is_refused(&m, "arm.max_deg: 2 degrees above min_deg, expected 10 or more");
     m          = good;
     m.weight_N = 15990.0;
     is_refused(&m, "ground.weight_N: 1.599e+04, expected more than the 3.169e+04 N");
