@@ -148,6 +148,8 @@ TEST(defects_are_refused_with_file_line_key_and_write_nothing)
           "bad.yaml:4: realtime.priority: 100, expected 0 … 99" },
         { MINIMAL REPLAY "estimator: {contact_sigmas: 0.1}\n",
           "bad.yaml:4: estimator.contact_sigmas" },
+        { MINIMAL REPLAY "estimator: {outside_floors: 500}\n",
+          "bad.yaml:4: estimator.outside_floors: 500, expected 1 … 100" },
         { MINIMAL REPLAY "estimator:\n  sample_s: 1\n", "bad.yaml:5: estimator.sample_s" },
         { MINIMAL REPLAY "match: {max_evaluations: 0}\n", "match.max_evaluations: 0, expected" },
         { MINIMAL REPLAY "publish: {estimate_every: 0}\n", "publish.estimate_every: 0, expected" },
