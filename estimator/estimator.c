@@ -184,18 +184,6 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
     }
 }
 
-enum dig_status dig_estimator_set_correction(struct dig_estimator *const        estimator,
-                                             const struct dig_correction *const correction)
-{
-    assert(estimator != NULL);
-    struct dig_corrected_machine corrected;
-    const enum dig_status status = dig_correction_apply(estimator->machine, correction, &corrected);
-    if (status == DIG_OK) {
-        dig_estimator_set_machine(estimator, &corrected);
-    }
-    return status;
-}
-
 enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
                                    const struct dig_sample *const sample,
                                    struct dig_estimate *const     estimate)

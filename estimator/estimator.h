@@ -20,8 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct dig_estimator;  // estimator/estimator_state.h: fixed size
-struct dig_correction; // estimator/wrench/correction.h
+struct dig_estimator; // estimator/estimator_state.h: fixed size
 
 /// Size of the struct, about 2 MB: for allocating one.
 size_t dig_estimator_size(void);
@@ -34,15 +33,6 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
                                                   const struct dig_machine            *machine,
                                                   const struct dig_curve_set          *set,
                                                   const struct dig_estimator_settings *settings);
-
-/// Applies a correction of the machine; only between two digs. Geometry, weights and inertias are
-/// the corrected ones from then on. The links' inertia is subtracted by rates of the last quarter
-/// second's angles; a delay moves the pose back to the time of the pressures. NULL: the machine as
-/// its file says, without inertia. DIG_EINVAL, DIG_EUNREACHABLE as dig_correction_check(); nothing
-/// changes then. About a millisecond.
-DIG_MUST_CHECK enum dig_status
-dig_estimator_set_correction(struct dig_estimator        *estimator,
-                             const struct dig_correction *correction);
 
 /// One tick. DIG_ESTALE: a sample without a moment, or not younger than the last. DIG_EINVAL: a
 /// number that is not finite. State and *estimate are unchanged then. Constant time, but for the

@@ -26,8 +26,10 @@ bool dig_estimator_is_off_table(const struct dig_estimator *estimator);
 /// microsecond for hundreds.
 void dig_estimator_set_table(struct dig_estimator *estimator, const struct dig_curve_set *set);
 
-/// Exchanges the machine while idle by one that was corrected before: a copy of two kilobytes. A
-/// different correction drops the bias learnt in free air.
+/// Exchanges the machine while idle by one that was corrected before: a copy of two kilobytes.
+/// Geometry, weights and inertias are the corrected ones from then on. The links' inertia is
+/// subtracted by rates of the last quarter second's angles; a delay moves the pose back to the time
+/// of the pressures. A different correction drops the bias learnt in free air.
 void dig_estimator_set_machine(struct dig_estimator               *estimator,
                                const struct dig_corrected_machine *corrected);
 

@@ -167,9 +167,6 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
     if (status == DIG_OK) {
         status = dig_estimator_init(d->estimator, &d->loaded.machine, d->loaded.set,
                                     &d->loaded.config.estimator);
-        if (status == DIG_OK && d->loaded.corrects) {
-            status = dig_estimator_set_correction(d->estimator, &d->loaded.correction);
-        }
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: machine %s with table %s: %s", path,
                                 d->loaded.config.machine.text, d->loaded.config.table.text,
@@ -177,6 +174,7 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
         }
     }
     if (status == DIG_OK) {
+        dig_estimator_set_machine(d->estimator, &d->loaded.corrected);
         status = create_input(d, path, error);
     }
     if (status != DIG_OK) {

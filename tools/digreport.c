@@ -21,10 +21,9 @@
 // What the daemon had: machine, table and, where it ran with one, the model, by which the digs are
 // measured again.
 struct loaded {
-    struct dig_machine    machine;
-    struct dig_curve_set *set;
-    struct dig_correction correction;
-    bool                  corrects;
+    struct dig_machine           machine;
+    struct dig_curve_set        *set;
+    struct dig_corrected_machine corrected;
 };
 
 // Scale and curves hold for a bucket of the table's shape alone.
@@ -52,7 +51,7 @@ static enum dig_status load(const struct digreport_options *const options, struc
     }
     if (status == DIG_OK && options->model != NULL) {
         status = dig_load_model(options->model, options->table, &had->machine, had->set,
-                                &had->correction, &had->corrects, error);
+                                &had->corrected, error);
     }
     return digreport_input(status);
 }
@@ -77,8 +76,8 @@ static enum dig_status report_runs(const struct digreport_options *const options
     all->table  = options->table;
     all->lambda = had.machine.link[DIG_JOINT_BUCKET].length_m / had.set->tooth_m;
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
-        status = digreport_run(options, &had.machine, had.corrects ? &had.correction : NULL,
-                               had.set, options->log[i], &all->run[i], error);
+        status = digreport_run(options, &had.machine, &had.corrected, had.set, options->log[i],
+                               &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
     status = digreport_input(status);

@@ -2,6 +2,7 @@
 
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"
+#include "estimator/estimator_tick.h"
 #include "estimator/match/depth.h"
 #include "estimator/track/inertia_error.h"
 
@@ -73,7 +74,7 @@ static enum dig_status tell_depths(const struct dig_machine *const   machine,
 }
 
 static enum dig_status observe(const struct dig_machine *const           machine,
-                               const struct dig_correction *const        correction,
+                               const struct dig_corrected_machine *const corrected,
                                const struct dig_curve_set *const         set,
                                const struct dig_machine_recording *const recording,
                                struct dig_estimator *const               estimator,
@@ -81,12 +82,12 @@ static enum dig_status observe(const struct dig_machine *const           machine
 {
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     enum dig_status status = dig_estimator_init(estimator, machine, set, &settings);
-    if (status == DIG_OK && correction != NULL) {
-        status = dig_estimator_set_correction(estimator, correction);
-    }
     if (status != DIG_OK) {
         return dig_error_set(error, status, "machine %s: %s", machine->name,
                              dig_status_str(status));
+    }
+    if (corrected != NULL) {
+        dig_estimator_set_machine(estimator, corrected);
     }
     status = drive(estimator, recording, digs);
     if (status == DIG_OK) {
@@ -106,7 +107,7 @@ static enum dig_status observe(const struct dig_machine *const           machine
 }
 
 enum dig_status dig_observe_machine(const struct dig_machine *const           machine,
-                                    const struct dig_correction *const        correction,
+                                    const struct dig_corrected_machine *const corrected,
                                     const struct dig_curve_set *const         set,
                                     const struct dig_machine_recording *const recording,
                                     struct dig_observed_digs *const           digs,
@@ -119,7 +120,7 @@ enum dig_status dig_observe_machine(const struct dig_machine *const           ma
     }
     struct dig_observed_digs found = { .digs = 0 };
     const enum dig_status    status =
-        observe(machine, correction, set, recording, estimator, &found, error);
+        observe(machine, corrected, set, recording, estimator, &found, error);
     free(estimator);
     if (status != DIG_OK) {
         dig_observed_digs_finish(&found);

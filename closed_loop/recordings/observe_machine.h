@@ -25,7 +25,7 @@ struct dig_observed_digs {
 };
 
 /// Every dig of the recording that followed a trajectory of the set, with the settings a daemon has
-/// by default, the machine as its file says (correction NULL) or as corrected, and lambda =
+/// by default, the machine as its file says (corrected NULL) or as corrected, and lambda =
 /// machine's tooth length / table's. Samples that do not tell the moment are passed over. A dig
 /// that the recording breaks off is none, nor one off the table's depths. What inertia adds to the
 /// forces is in their sigmas, and the depth is told (estimator/match/depth.h).
@@ -34,10 +34,12 @@ struct dig_observed_digs {
 /// machine fails its check. DIG_ENOMEM. Writes on success only; free with
 /// dig_observed_digs_finish(). About a microsecond a sample, and for a table of several depths 1.5
 /// ms an entry and dig besides.
-DIG_MUST_CHECK enum dig_status
-dig_observe_machine(const struct dig_machine *machine, const struct dig_correction *correction,
-                    const struct dig_curve_set *set, const struct dig_machine_recording *recording,
-                    struct dig_observed_digs *digs, struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_observe_machine(const struct dig_machine           *machine,
+                                                   const struct dig_corrected_machine *corrected,
+                                                   const struct dig_curve_set         *set,
+                                                   const struct dig_machine_recording *recording,
+                                                   struct dig_observed_digs           *digs,
+                                                   struct dig_error                   *error);
 
 /// NULL and a zeroed struct are allowed.
 void dig_observed_digs_finish(struct dig_observed_digs *digs);

@@ -10,9 +10,8 @@
 enum { NUMBERS = sizeof(struct dig_correction) / sizeof(double) };
 _Static_assert(sizeof(struct dig_correction) % sizeof(double) == 0, "doubles only");
 
-bool dig_correction_is_none(const struct dig_correction *const correction)
+static bool is_none(const struct dig_correction *const correction)
 {
-    assert(correction != NULL);
     const double *const number = (const double *)(const void *)correction;
     bool                none   = true;
     for (size_t i = 0; i < NUMBERS; i++) {
@@ -79,54 +78,39 @@ struct dig_machine dig_correction_drawn(const struct dig_machine *const    corre
     return drawn;
 }
 
-enum dig_status dig_correction_check(const struct dig_machine *const    machine,
-                                     const struct dig_correction *const correction)
+static bool can_be(const struct dig_correction *const correction)
 {
-    assert(machine != NULL && correction != NULL);
-    if (machine->sensor.fitted && !dig_correction_is_none(correction)) {
-        return DIG_EINVAL;
-    }
     const double *const number = (const double *)(const void *)correction;
+    bool                can    = true;
     for (size_t i = 0; i < NUMBERS; i++) {
-        if (!isfinite(number[i])) {
-            return DIG_EINVAL;
-        }
+        can = can && isfinite(number[i]);
     }
     for (int j = 0; j < DIG_JOINTS; j++) {
+        can = can && correction->friction[j].stribeck_mps >= 0.0;
         for (int c = 0; c < DIG_CHAMBERS; c++) {
-            if (!(correction->gain[j][c] > -1.0)) {
-                return DIG_EINVAL;
-            }
-        }
-        if (!(correction->friction[j].stribeck_mps >= 0.0)) {
-            return DIG_EINVAL;
+            can = can && correction->gain[j][c] > -1.0;
         }
     }
-    const struct dig_machine made   = dig_correction_machine(machine, correction);
-    enum dig_status          status = dig_machine_check(&made, NULL);
-    if (status == DIG_OK) {
-        status = dig_linkage_check(&made);
-    }
-    return status;
+    return can;
 }
 
 enum dig_status dig_correction_apply(const struct dig_machine *const     machine,
                                      const struct dig_correction *const  correction,
                                      struct dig_corrected_machine *const corrected)
 {
-    assert(machine != NULL && corrected != NULL);
-    struct dig_corrected_machine made = { .corrects = false };
-    if (correction != NULL) {
-        const enum dig_status status = dig_correction_check(machine, correction);
+    assert(machine != NULL && correction != NULL && corrected != NULL);
+    struct dig_corrected_machine made = { .corrects = !is_none(correction) };
+    if (made.corrects) {
+        if (machine->sensor.fitted || !can_be(correction)) {
+            return DIG_EINVAL;
+        }
+        made.correction        = *correction;
+        made.machine           = dig_correction_machine(machine, correction);
+        enum dig_status status = dig_machine_check(&made.machine, NULL);
+        status                 = status == DIG_OK ? dig_linkage_check(&made.machine) : status;
         if (status != DIG_OK) {
             return status;
         }
-        // A force sensor's rig has no correction; one was refused before.
-        made.corrects = !machine->sensor.fitted;
-    }
-    if (made.corrects) {
-        made.correction = *correction;
-        made.machine    = dig_correction_machine(machine, correction);
     }
     *corrected = made;
     return DIG_OK;

@@ -52,15 +52,6 @@ struct dig_correction {
     double          delay_s; // by which pressures are later than the angles beside them
 };
 
-/// True when it changes nothing.
-bool dig_correction_is_none(const struct dig_correction *correction);
-
-/// DIG_EINVAL: a number that is not finite; a gain of -1 or less; a corrected machine that fails
-/// dig_machine_check() or whose linkage does not close over its range; a rig with a force sensor,
-/// for which no correction is defined. About a millisecond.
-DIG_MUST_CHECK enum dig_status dig_correction_check(const struct dig_machine    *machine,
-                                                    const struct dig_correction *correction);
-
 /// The machine with its geometry and its links corrected; a payload is part of its bucket.
 struct dig_machine dig_correction_machine(const struct dig_machine    *machine,
                                           const struct dig_correction *correction);
@@ -80,8 +71,10 @@ struct dig_corrected_machine {
     struct dig_machine    machine; // corrected
 };
 
-/// Makes it; correction NULL, or a rig with a force sensor: the machine as its file says. Errors
-/// and cost as dig_correction_check(); nothing is written then.
+/// Makes it; of a zeroed correction the machine as its file says. Nothing is written otherwise:
+/// DIG_EINVAL: a number that is not finite; a gain of -1 or less; a corrected machine that fails
+/// dig_machine_check(); a rig with a force sensor, for which no correction is defined.
+/// DIG_EUNREACHABLE: its linkage does not close over its range. About a millisecond.
 DIG_MUST_CHECK enum dig_status dig_correction_apply(const struct dig_machine     *machine,
                                                     const struct dig_correction  *correction,
                                                     struct dig_corrected_machine *corrected);

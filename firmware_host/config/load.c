@@ -95,25 +95,30 @@ static enum dig_status check_sensing(const char *const path, const struct dig_lo
         senses ? "signals of a force sensor" : "none of its signals");
 }
 
-// The table, checked, with the model's effects; *set is loaded, or NULL, whatever the status.
-static enum dig_status load_table(const char *const path, const struct dig_config *const config,
-                                  const struct dig_machine *const machine,
-                                  struct dig_curve_set **const    set,
-                                  struct dig_correction *const correction, bool *const corrects,
-                                  struct dig_error *const error)
+// The table, with the model in it, where there is one.
+static enum dig_status load_set(const char *const path, const struct dig_config *const config,
+                                const struct dig_machine *const     machine,
+                                struct dig_curve_set **const        set,
+                                struct dig_corrected_machine *const corrected,
+                                struct dig_error *const             error)
 {
-    const char *const model  = config->model.text;
-    enum dig_status   status = dig_table_load(config->table.text, set, error);
-    status                   = dig_yaml_tell_namer(path, "table", status, error);
-    if (status == DIG_OK) {
-        status = check_scene(path, config, machine, *set, error);
-    }
-    if (status == DIG_OK && model[0] != '\0') {
+    struct dig_curve_set        *loaded = NULL;
+    struct dig_corrected_machine made   = { .corrects = false };
+    enum dig_status              status = dig_table_load(config->table.text, &loaded, error);
+    status                              = dig_yaml_tell_namer(path, "table", status, error);
+    status = status == DIG_OK ? check_scene(path, config, machine, loaded, error) : status;
+    if (status == DIG_OK && config->model.text[0] != '\0') {
         status =
-            dig_load_model(model, config->table.text, machine, *set, correction, corrects, error);
+            dig_load_model(config->model.text, config->table.text, machine, loaded, &made, error);
         status = dig_yaml_tell_namer(path, "model", status, error);
     }
-    return status;
+    if (status != DIG_OK) {
+        dig_curve_set_destroy(loaded);
+        return status;
+    }
+    *set       = loaded;
+    *corrected = made;
+    return DIG_OK;
 }
 
 enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded,
@@ -135,7 +140,7 @@ enum dig_status dig_load(const char *const path, struct dig_loaded *const loaded
         status = check_sensing(path, &l, error);
     }
     if (status == DIG_OK) {
-        status = load_table(path, &l.config, &l.machine, &l.set, &l.correction, &l.corrects, error);
+        status = load_set(path, &l.config, &l.machine, &l.set, &l.corrected, error);
     }
     if (status != DIG_OK) {
         dig_loaded_finish(&l);
@@ -151,25 +156,9 @@ enum dig_status dig_load_table(const char *const path, const struct dig_machine 
                                struct dig_error *const             error)
 {
     assert(path != NULL && machine != NULL && set != NULL && corrected != NULL);
-    struct dig_config            config;
-    struct dig_correction        correction;
-    struct dig_corrected_machine made;
-    bool                         corrects = false;
-    struct dig_curve_set        *loaded   = NULL;
-    enum dig_status              status   = dig_config_read(path, &config, error);
-    if (status == DIG_OK) {
-        status = load_table(path, &config, machine, &loaded, &correction, &corrects, error);
-    }
-    if (status == DIG_OK) {
-        status = dig_correction_apply(machine, corrects ? &correction : NULL, &made);
-    }
-    if (status != DIG_OK) {
-        dig_curve_set_destroy(loaded);
-        return status;
-    }
-    *set       = loaded;
-    *corrected = made;
-    return DIG_OK;
+    struct dig_config     config;
+    const enum dig_status status = dig_config_read(path, &config, error);
+    return status == DIG_OK ? load_set(path, &config, machine, set, corrected, error) : status;
 }
 
 void dig_loaded_finish(struct dig_loaded *const loaded)

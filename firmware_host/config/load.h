@@ -12,11 +12,10 @@
 struct dig_loaded {
     struct dig_config            config;
     struct dig_machine           machine;
-    bool                         corrects;   // a model names effects of the machine
-    struct dig_correction        correction; // their correction
-    struct dig_curve_set        *set;        // with the model's effects of the soil in it
-    struct dig_signal_map        map;        // of a bus
-    struct dig_machine_recording recording;  // of a replay
+    struct dig_corrected_machine corrected; // by the model's effects of the machine
+    struct dig_curve_set        *set;       // with the model's effects of the soil in it
+    struct dig_signal_map        map;       // of a bus
+    struct dig_machine_recording recording; // of a replay
     bool                         measured[DIG_SIGNALS]; // in map or recording
 };
 

@@ -97,18 +97,18 @@ static enum dig_status change_curves(const char *const model_path, const char *c
     return status;
 }
 
-static enum dig_status check(const char *const path, const char *const table_path,
-                             const struct dig_model *const     model,
-                             const struct dig_machine *const   machine,
-                             const struct dig_curve_set *const set,
-                             struct dig_correction *const correction, struct dig_error *const error)
+static enum dig_status
+correct(const char *const path, const char *const table_path, const struct dig_model *const model,
+        const struct dig_machine *const machine, const struct dig_curve_set *const set,
+        struct dig_corrected_machine *const corrected, struct dig_error *const error)
 {
+    struct dig_correction found;
     if (strcmp(model->scene_hash, set->scene_hash) != 0) {
         return dig_yaml_refuse(path, error, "scene_hash: %.12s…, but %s is of scene %.12s…",
                                model->scene_hash, table_path, set->scene_hash);
     }
-    if (dig_effects_correction(model, correction) != DIG_OK ||
-        (machine != NULL && dig_correction_check(machine, correction) != DIG_OK)) {
+    if (dig_effects_correction(model, &found) != DIG_OK ||
+        (machine != NULL && dig_correction_apply(machine, &found, corrected) != DIG_OK)) {
         return dig_yaml_refuse(path, error,
                                "effects: the machine %s cannot be so, expected parameters of the "
                                "catalogue with which its linkages still close",
@@ -118,25 +118,23 @@ static enum dig_status check(const char *const path, const char *const table_pat
 }
 
 enum dig_status dig_load_model(const char *const model_path, const char *const table_path,
-                               const struct dig_machine *const machine,
-                               struct dig_curve_set *const     set,
-                               struct dig_correction *const correction, bool *const corrects,
-                               struct dig_error *const error)
+                               const struct dig_machine *const     machine,
+                               struct dig_curve_set *const         set,
+                               struct dig_corrected_machine *const corrected,
+                               struct dig_error *const             error)
 {
-    assert(model_path != NULL && table_path != NULL && set != NULL);
-    assert(correction != NULL && corrects != NULL);
-    struct dig_model      model  = { .effects = 0 };
-    struct dig_correction found  = { .delay_s = 0.0 };
-    enum dig_status       status = dig_model_read(model_path, &model, error);
+    assert(model_path != NULL && table_path != NULL && set != NULL && corrected != NULL);
+    struct dig_model             model  = { .effects = 0 };
+    struct dig_corrected_machine made   = { .corrects = false };
+    enum dig_status              status = dig_model_read(model_path, &model, error);
     if (status == DIG_OK) {
-        status = check(model_path, table_path, &model, machine, set, &found, error);
+        status = correct(model_path, table_path, &model, machine, set, &made, error);
     }
     if (status == DIG_OK && needs_curves(&model)) {
         status = change_curves(model_path, table_path, &model, set, error);
     }
     if (status == DIG_OK) {
-        *corrects   = !dig_correction_is_none(&found);
-        *correction = found;
+        *corrected = made;
     }
     dig_model_finish(&model);
     return status;

@@ -57,17 +57,16 @@ static struct dig_model model_of(const struct dig_curve_set *const set)
 static void apply(const struct dig_model *const model, const char *const name,
                   struct dig_curve_set *const set)
 {
-    char                  table[512], path[512];
-    struct dig_correction correction;
-    bool                  corrects = true;
-    struct dig_error      error    = { "" };
+    char                         table[512], path[512];
+    struct dig_corrected_machine corrected = { .corrects = true };
+    struct dig_error             error     = { "" };
     (void)snprintf(table, sizeof table, "%s", scratch_path(name));
     (void)snprintf(path, sizeof path, "%s", scratch_path("model.json"));
     if (dig_model_save(path, model, &error) != DIG_OK ||
-        dig_load_model(path, table, NULL, set, &correction, &corrects, &error) != DIG_OK) {
+        dig_load_model(path, table, NULL, set, &corrected, &error) != DIG_OK) {
         fail_msg("%s", error.text);
     }
-    assert_false(corrects);
+    assert_false(corrected.corrects);
 }
 
 TEST(digs_made_otherwise_change_as_the_plain_ones_do)

@@ -43,12 +43,14 @@ TEST(a_table_is_exchanged_with_the_forecast_that_belongs_to_it)
 static double moment_of_Nm(const struct bench *const b, const struct dig_correction *const by,
                            const int samples)
 {
-    struct dig_estimator *const e = calloc(1, dig_estimator_size());
-    struct dig_estimate         estimate;
+    struct dig_estimator *const  e = calloc(1, dig_estimator_size());
+    struct dig_corrected_machine corrected;
+    struct dig_estimate          estimate;
     assert_non_null(e);
     assert_int_equal(dig_estimator_init(e, &b->machine, &b->cube.set, &b->estimator_settings),
                      DIG_OK);
-    assert_int_equal(dig_estimator_set_correction(e, by), DIG_OK);
+    assert_int_equal(dig_correction_apply(&b->machine, by, &corrected), DIG_OK);
+    dig_estimator_set_machine(e, &corrected);
     for (int64_t i = 0; i < samples; i++) {
         const struct dig_reading r      = bench_still((1000 + i * 5) * MS);
         struct dig_sample        sample = { .time_ns = r.time_ns };
@@ -93,6 +95,7 @@ TEST(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start)
 {
     struct bench *const         b     = bench_create();
     const struct dig_correction heavy = { .link[DIG_JOINT_BUCKET] = { .mass_kg = 250.0 } };
+    const struct dig_correction none  = { .delay_s = 0.0 };
     int64_t                     at_ms = 1000;
 
     // In a dig the machine stays as it is; push_Pa makes the moment of another sample.
@@ -109,7 +112,7 @@ TEST(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start)
         (void)moment_after_Nm(b, &at_ms, 1, 0.0);
     }
     assert_int_equal(b->loop.tick_status.generation, 2);
-    assert_true(fabs(moment_of_Nm(b, &heavy, 100) - moment_of_Nm(b, NULL, 100)) > 100.0);
+    assert_true(fabs(moment_of_Nm(b, &heavy, 100) - moment_of_Nm(b, &none, 100)) > 100.0);
     assert_close(moment_after_Nm(b, &at_ms, 99, 0.0), moment_of_Nm(b, &heavy, 100), 1e-6);
 
     // The same again is nothing new: what free air taught stays learnt.
@@ -118,7 +121,7 @@ TEST(a_corrected_machine_is_taken_up_between_two_digs_as_if_from_the_start)
     assert_int_equal(b->loop.tick_status.generation, 3);
 
     // And taken off again.
-    offer_machine(b, NULL, 4);
-    assert_close(moment_after_Nm(b, &at_ms, 100, 0.0), moment_of_Nm(b, NULL, 100), 1e-6);
+    offer_machine(b, &none, 4);
+    assert_close(moment_after_Nm(b, &at_ms, 100, 0.0), moment_of_Nm(b, &none, 100), 1e-6);
     bench_destroy(b);
 }

@@ -90,7 +90,7 @@ enum dig_status digloop_load_machine(const struct digloop_job *const job,
 {
     assert(job != NULL && machine != NULL);
     const struct digloop_options *const options = job->options;
-    struct digloop_machine              loaded  = { .corrects = false };
+    struct digloop_machine              loaded  = { .lambda = 0.0 };
     const bool                          any     = options->machine != NULL;
     enum dig_status                     status  = DIG_OK;
     if (any) {
@@ -102,7 +102,7 @@ enum dig_status digloop_load_machine(const struct digloop_job *const job,
     }
     if (status == DIG_OK && options->model != NULL) {
         status = dig_load_model(options->model, options->table, any ? &loaded.machine : NULL,
-                                job->set, &loaded.correction, &loaded.corrects, error);
+                                job->set, &loaded.corrected, error);
     }
     if (status == DIG_OK) {
         *machine = loaded;
@@ -176,9 +176,8 @@ static enum dig_status read_samples(const struct digloop_job *const job, const c
     enum dig_status status = digloop_read_machine(path, &machine->machine, &recording, error);
     if (status == DIG_OK) {
         struct dig_error why = { "" };
-        status =
-            dig_observe_machine(&machine->machine, machine->corrects ? &machine->correction : NULL,
-                                job->set, &recording, digs, &why);
+        status = dig_observe_machine(&machine->machine, &machine->corrected, job->set, &recording,
+                                     digs, &why);
         if (status != DIG_OK) {
             (void)dig_error_set(error, status, "%s: %s", path, why.text);
         }

@@ -19,10 +19,9 @@ bool digloop_is_force_recording(const char *path);
 
 /// The machine of --machine, and what the model of --model says of it.
 struct digloop_machine {
-    struct dig_machine    machine;
-    double                lambda; // its bucket's length over that of the table's
-    bool                  corrects;
-    struct dig_correction correction;
+    struct dig_machine           machine;
+    double                       lambda; // its bucket's length over that of the table's
+    struct dig_corrected_machine corrected;
 };
 
 /// A machine recording or an LCM log of the daemon, as it is.

@@ -66,8 +66,8 @@ static void take_prediction(void *const context, const int64_t time_us,
 }
 
 // The digs of a log, measured again from its samples: the same estimator, without a bus.
-static enum dig_status measure(const struct dig_machine *const    machine,
-                               const struct dig_correction *const correction,
+static enum dig_status measure(const struct dig_machine *const           machine,
+                               const struct dig_corrected_machine *const corrected,
                                const struct dig_curve_set *const set, const char *const log,
                                const struct published *const published,
                                struct dig_observation *const simple,
@@ -80,7 +80,7 @@ static enum dig_status measure(const struct dig_machine *const    machine,
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_observe_machine(machine, correction, set, &samples, &digs, &why);
+    status = dig_observe_machine(machine, corrected, set, &samples, &digs, &why);
     dig_machine_recording_finish(&samples);
     if (status != DIG_OK) {
         return dig_error_set(error, status, "%s: %s", log, why.text);
@@ -170,9 +170,9 @@ static enum dig_status curve_as_dug(const struct dig_curve_set *const   set,
     return status;
 }
 
-enum dig_status digreport_run(const struct digreport_options *const options,
-                              const struct dig_machine *const       machine,
-                              const struct dig_correction *const    correction,
+enum dig_status digreport_run(const struct digreport_options *const     options,
+                              const struct dig_machine *const           machine,
+                              const struct dig_corrected_machine *const corrected,
                               const struct dig_curve_set *const set, char *const named_log,
                               struct dig_report_run *const run, struct dig_error *const error)
 {
@@ -194,7 +194,7 @@ enum dig_status digreport_run(const struct digreport_options *const options,
 
     struct dig_observation simple = { .trajectory = 0 };
     struct dig_observation real   = { .trajectory = 0 };
-    status = measure(machine, correction, set, log, &published, &simple, &real, error);
+    status = measure(machine, corrected, set, log, &published, &simple, &real, error);
     if (status != DIG_OK) {
         return status;
     }

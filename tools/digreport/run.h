@@ -8,12 +8,11 @@
 #include "tools/digreport/options.h"
 
 /// Fills the run from NAME=LOG.lcm: the dig that identified the gravel, the one that was predicted,
-/// and the force recordings that were fed to the rig. correction: the machine's, NULL: as its file
-/// says. DIG_ENOMATCH for a log without such digs;
+/// and the force recordings that were fed to the rig. DIG_ENOMATCH for a log without such digs;
 /// reading fails as dig_lcm_log_each() and dig_recording_read() do.
-DIG_MUST_CHECK enum dig_status digreport_run(const struct digreport_options *options,
-                                             const struct dig_machine       *machine,
-                                             const struct dig_correction    *correction,
+DIG_MUST_CHECK enum dig_status digreport_run(const struct digreport_options     *options,
+                                             const struct dig_machine           *machine,
+                                             const struct dig_corrected_machine *corrected,
                                              const struct dig_curve_set *set, char *named_log,
                                              struct dig_report_run *run, struct dig_error *error);
 
