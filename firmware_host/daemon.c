@@ -125,19 +125,20 @@ static void connect_threads(struct dig_daemon *const d)
                             .publisher_generation = &d->publisher_generation },
         .early          = &d->early,
     };
-    d->publisher = (struct dig_publisher){ .config      = config,
-                                           .set         = d->loaded.set,
-                                           .input       = &d->input,
-                                           .fit         = &d->fit,
-                                           .records     = &d->records,
-                                           .predictions = &d->predictions,
-                                           .results     = &d->results,
-                                           .tables      = &d->tables,
-                                           .generation  = &d->publisher_generation,
-                                           .tick_status = &d->tick_status,
-                                           .input_log   = &d->input_log,
-                                           .fit_log     = &d->fit_log,
-                                           .stop        = &d->stop_publish };
+    d->publisher = (struct dig_publisher){
+        .config      = config,
+        .set         = d->loaded.set,
+        .records     = &d->records,
+        .predictions = &d->predictions,
+        .results     = &d->results,
+        .tables      = &d->tables,
+        .generation  = &d->publisher_generation,
+        .tick_status = &d->tick_status,
+        .input_log   = &d->input_log,
+        .fit_log     = &d->fit_log,
+        .stop        = &d->stop_publish,
+        .health      = { .tick_s = config->tick_s, .input = &d->input, .fit = &d->fit.count }
+    };
 }
 
 static bool allocate(struct dig_daemon *const d)

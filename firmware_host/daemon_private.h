@@ -44,7 +44,6 @@ struct dig_daemon {
     struct dig_latest        basis, table, tables, predictions, tick_status, input_log, fit_log;
     atomic_llong             publisher_generation;
     struct handoff_memory    memory;
-    struct dig_rt_grant      grant;
     sem_t                    granted;
     atomic_bool              stop;         // input, tick, matcher
     atomic_bool              stop_publish; // after them

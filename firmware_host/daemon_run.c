@@ -34,7 +34,7 @@ static void *input_main(void *const context)
 static void *tick_main(void *const context)
 {
     struct dig_daemon *const d = context;
-    d->grant                   = dig_rt_enter(&d->loaded.config.realtime);
+    d->publisher.health.rt     = dig_rt_enter(&d->loaded.config.realtime);
     (void)sem_post(&d->granted);
     dig_loop_run(&d->loop, &d->stop);
     return NULL;
@@ -115,8 +115,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_cons
             char line[LINE];
             while (sem_wait(&d->granted) != 0) {
             }
-            d->publisher.grant = d->grant;
-            dig_rt_describe(&d->loaded.config.realtime, &d->grant, sizeof line, line);
+            dig_rt_describe(&d->loaded.config.realtime, &d->publisher.health.rt, sizeof line, line);
             console->say(line);
         }
     }

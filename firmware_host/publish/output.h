@@ -29,18 +29,17 @@ double dig_latency_quantile_us(const struct dig_latency *latency, double share);
 
 /// HEALTH in plain words; the fields are those of messages/health_t.lcm.
 struct dig_health {
-    int64_t                time_ns; // CLOCK_MONOTONIC
-    const char            *state, *input, *note;
-    struct dig_rt_grant    rt;
-    double                 tick_s;
-    struct dig_tick_status tick_status;
-    int64_t                frames, malformed, reconnects, lost;
-    int64_t                checksum, errors, bus_offs, timeouts, unsent, reloads, reloads_refused;
-    int32_t                matches;
-    int32_t                whole, aborted, unknown; // digs, by how they ended
-    struct dig_latency     latency;
-    const char            *table;                          // scene hash
-    char                   missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
+    int64_t                        time_ns; // CLOCK_MONOTONIC
+    const char                    *state, *note;
+    struct dig_rt_grant            rt;
+    double                         tick_s;
+    struct dig_tick_status         tick_status;
+    const struct dig_input        *input; // its name and counters
+    const struct dig_fit_counters *fit;
+    int64_t                        lost, unsent;
+    struct dig_latency             latency;
+    const char                    *table;                          // scene hash
+    char                           missing[DIG_SIGNAL_NAMES_SIZE]; // signals, by name
 };
 
 struct dig_output;

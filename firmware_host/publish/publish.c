@@ -183,33 +183,16 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
     take_log_lines(p, &news);
     (void)dig_latest_take(p->tick_status, &p->health.tick_status);
     const char *const state = state_of(p, stopping);
-    if (state != p->state) {
-        news     = true;
-        p->state = state;
-        dig_publisher_log_limited(p, "%s (%s)", state, p->input->name);
+    if (state != p->health.state) {
+        news            = true;
+        p->health.state = state;
+        dig_publisher_log_limited(p, "%s (%s)", state, p->health.input->name);
     }
-    p->health.time_ns    = now_ns;
-    p->health.state      = state;
-    p->health.input      = p->input->name;
-    p->health.note       = p->note.text;
-    p->health.rt         = p->grant;
-    p->health.tick_s     = p->config->tick_s;
-    p->health.frames     = atomic_load(&p->input->frames);
-    p->health.malformed  = atomic_load(&p->input->malformed);
-    p->health.reconnects = atomic_load(&p->input->reconnects);
-    p->health.lost       = atomic_load(&p->input->overflow) + p->health.tick_status.lost +
+    p->health.time_ns = now_ns;
+    p->health.note    = p->note.text;
+    p->health.table   = p->set->scene_hash;
+    p->health.lost    = atomic_load(&p->health.input->overflow) + p->health.tick_status.lost +
                      p->health.tick_status.lost_digs;
-    p->health.checksum        = atomic_load(&p->input->checksum);
-    p->health.errors          = atomic_load(&p->input->errors);
-    p->health.bus_offs        = atomic_load(&p->input->bus_offs);
-    p->health.timeouts        = atomic_load(&p->input->timeouts);
-    p->health.reloads         = atomic_load(&p->fit->count.reloads);
-    p->health.reloads_refused = atomic_load(&p->fit->count.reloads_refused);
-    p->health.table           = p->set->scene_hash;
-    p->health.matches         = (int32_t)atomic_load(&p->fit->count.matches);
-    p->health.whole           = (int32_t)atomic_load(&p->fit->count.whole);
-    p->health.aborted         = (int32_t)atomic_load(&p->fit->count.aborted);
-    p->health.unknown         = (int32_t)atomic_load(&p->fit->count.unknown);
     dig_publisher_log_drops(p, now_ns);
     dig_publisher_log_held(p, dig_log_limit_held_before(&p->log_limit, now_ns, stopping));
     if (now_ns >= p->next_health_ns) {

@@ -23,8 +23,6 @@ struct dig_console {
 struct dig_publisher {
     const struct dig_config    *config;
     const struct dig_curve_set *set;
-    struct dig_input           *input;
-    struct dig_fit             *fit;
     struct dig_ring            *records;     // in
     struct dig_latest          *predictions; // in
     struct dig_ring            *results;     // in
@@ -34,16 +32,14 @@ struct dig_publisher {
     struct dig_latest          *fit_log;     // in
     const atomic_bool          *stop;
     atomic_llong               *generation; // out: of the table in use here
-    struct dig_rt_grant         grant;
-    struct dig_console          console; // used on this thread
+    struct dig_console          console;    // used on this thread
+    struct dig_health           health;     // rt, tick_s, input and fit fixed at start
 
     // the thread's own
     struct dig_output    *output;
-    struct dig_health     health;
     struct dig_log_line   note;
     struct dig_fit_result result; // the last one
     bool                  any_result;
-    const char           *state;
     int64_t next_health_ns, next_match_ns, next_watchdog_ns, next_lcm_ns, next_drops_ns;
     int64_t lcm_pause_ns;
     struct dig_table_update update; // a table, from when the tick uses it

@@ -109,9 +109,13 @@ void dig_publisher_log_match(const struct dig_publisher *const p)
 
 void dig_publisher_log_drops(struct dig_publisher *const p, const int64_t now_ns)
 {
-    const struct dig_drops *const d   = &p->health.tick_status.drops;
-    const int64_t                 all = d->nan + d->not_available + d->out_of_range + d->frozen +
-                        p->health.malformed + p->health.lost;
+    const struct dig_drops *const d         = &p->health.tick_status.drops;
+    const struct dig_input *const in        = p->health.input;
+    const int64_t                 malformed = atomic_load(&in->malformed);
+    const int64_t                 checksum  = atomic_load(&in->checksum);
+    const int64_t                 timeouts  = atomic_load(&in->timeouts);
+    const int64_t                 all =
+        d->nan + d->not_available + d->out_of_range + d->frozen + malformed + p->health.lost;
     if (all > p->logged_drops && now_ns >= p->next_drops_ns) {
         p->logged_drops  = all;
         p->next_drops_ns = now_ns + 10 * NS_PER_S;
@@ -121,9 +125,8 @@ void dig_publisher_log_drops(struct dig_publisher *const p, const int64_t now_ns
                           " malformed, %" PRId64 " wrong checksums, %" PRId64 " repeated, %" PRId64
                           " jumps, %" PRId64 " stuck, %" PRId64 " missed, %" PRId64
                           " timeouts, %" PRId64 " lost",
-                          d->not_available, d->out_of_range, d->frozen, d->nan, p->health.malformed,
-                          p->health.checksum, d->repeated, d->jump, d->stuck, d->missed,
-                          p->health.timeouts, p->health.lost);
+                          d->not_available, d->out_of_range, d->frozen, d->nan, malformed, checksum,
+                          d->repeated, d->jump, d->stuck, d->missed, timeouts, p->health.lost);
     }
 }
 
@@ -150,8 +153,8 @@ void dig_publisher_show(struct dig_publisher *const p, const int64_t now_ns)
                        p->result.track.valid ? "" : " (no longer)");
     }
     (void)snprintf(line, sizeof line, "%s | %s%s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
-                   p->state, phases[e->phase], motions[e->motion], on ? " " : "",
+                   p->health.state, phases[e->phase], motions[e->motion], on ? " " : "",
                    on ? p->set->trajectory[e->trajectory].name : "", 1e-3 * e->wrench.My_Nm, gravel,
-                   p->health.frames);
+                   (int64_t)atomic_load(&p->health.input->frames));
     p->console.show(line);
 }

@@ -262,8 +262,11 @@ TEST(what_the_daemon_publishes_is_printable)
     struct dig_output *output = NULL;
     assert_int_equal(dig_output_create(url, &output, NULL), DIG_OK);
     for (size_t i = 0; i < TEXTS; i++) {
+        static const struct dig_fit_counters none;
+        struct dig_input                     input = { .connected = true };
+        (void)snprintf(input.name, sizeof input.name, "%s", hostile[i]);
         const struct dig_health health = {
-            .state = "running", .input = hostile[i], .note = hostile[i], .table = "abc"
+            .state = "running", .note = hostile[i], .input = &input, .fit = &none, .table = "abc"
         };
         assert_int_equal(dig_output_health(output, &health), DIG_OK);
     }
