@@ -118,6 +118,7 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
                             .tick_generation      = &w->tick_generation,
                             .publisher_generation = &w->publisher_generation },
     };
+    dig_matcher_set_table(&fit->table.matcher, set);
 }
 
 /// That matcher looks at the dig going on, too; none does yet.

@@ -40,8 +40,8 @@ static const struct dig_expected *forecast_for(struct dig_fit *const            
     if (dig_approach_is_plain(&dig->approach) || !fit->track.valid) {
         return &fit->basis.forecast.expected[t];
     }
-    dig_matcher_expect(&fit->table.matcher, fit->table.set, fit->table.lambda, &fit->track.match, t,
-                       &dig->approach, &fit->expected);
+    dig_matcher_expect(&fit->table.matcher, fit->table.lambda, &fit->track.match, t, &dig->approach,
+                       &fit->expected);
     return &fit->expected;
 }
 
@@ -60,33 +60,26 @@ static bool is_too_short(struct dig_fit *const fit, const struct dig_observation
     return true;
 }
 
-static enum dig_status find_nearest(struct dig_fit *const fit, const size_t digs,
-                                    const struct dig_observation dig[],
-                                    struct dig_match *const      match)
+static enum dig_status match_digs(struct dig_fit *const fit, const size_t digs,
+                                  const struct dig_observation dig[], struct dig_match *const match,
+                                  enum dig_status *const refined)
 {
-    return dig_matcher_nearest(&fit->table.matcher, fit->table.set, digs, dig,
-                               fit->config->estimator.outside_floors, match);
+    return dig_matcher_match(&fit->table.matcher, digs, dig, fit->config->estimator.outside_floors,
+                             fit->config->match_evaluations, match, refined);
 }
 
-static enum dig_status refine(struct dig_fit *const fit, const size_t digs,
-                              const struct dig_observation dig[], struct dig_match *const match)
+// Matches a pool. Where no entry has all trajectories of the pool, the pool is cut to its youngest
+// dig.
+static enum dig_status match_pool(struct dig_fit *const fit, struct dig_pool *const pool,
+                                  struct dig_match *const match, enum dig_status *const refined)
 {
-    return dig_matcher_refine(&fit->table.matcher, fit->table.set, digs, dig,
-                              fit->config->match_evaluations, match);
-}
-
-// The entry nearest to a pool. Where no entry has all trajectories of the pool, the pool is cut to
-// its youngest dig.
-static enum dig_status find_nearest_of_pool(struct dig_fit *const fit, struct dig_pool *const pool,
-                                            struct dig_match *const match)
-{
-    const enum dig_status status = find_nearest(fit, pool->digs, pool->dig, match);
+    const enum dig_status status = match_digs(fit, pool->digs, pool->dig, match, refined);
     if (status != DIG_ENOMATCH || pool->digs == 1) {
         return status;
     }
     pool->dig[0] = pool->dig[pool->digs - 1];
     pool->digs   = 1;
-    return find_nearest(fit, 1, pool->dig, match);
+    return match_digs(fit, 1, pool->dig, match, refined);
 }
 
 // What is done to a dig as soon as it was observed. False where the table does not go so deep.
@@ -95,8 +88,8 @@ static bool complete(struct dig_fit *const fit, struct dig_observation *const di
     if (fit->machine != NULL) {
         dig_inertia_error_add(fit->machine, fit->table.lambda, dig);
     }
-    return dig_matcher_fit_depth(&fit->table.matcher, fit->table.set,
-                                 fit->config->estimator.path_limit_m, dig) == DIG_OK;
+    return dig_matcher_fit_depth(&fit->table.matcher, fit->config->estimator.path_limit_m, dig) ==
+           DIG_OK;
 }
 
 static void clear_provisional(struct dig_fit *const fit)
@@ -125,8 +118,9 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
     }
     dig_pool_add(&pool, dig);
 
-    struct dig_match match;
-    enum dig_status  status = find_nearest_of_pool(fit, &pool, &match);
+    struct dig_match      match;
+    enum dig_status       refined = DIG_OK;
+    const enum dig_status status  = match_pool(fit, &pool, &match, &refined);
     if (status != DIG_OK) {
         log_dig(fit, dig,
                 status == DIG_ENOMATCH ? "no match, the table holds no curve of this dig"
@@ -134,10 +128,9 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
                 status);
         return;
     }
-    status = refine(fit, pool.digs, pool.dig, &match);
-    if (status != DIG_OK) {
+    if (refined != DIG_OK) {
         // The nearest entry stands: it is exact, only coarse.
-        log_dig(fit, dig, "nearest entry only", status);
+        log_dig(fit, dig, "nearest entry only", refined);
     }
     fit->pool  = pool;
     fit->track = dig_gravel_track_make(fit->table.set, &match, dig, dig_input_now_ns(),
@@ -155,7 +148,8 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
 static void match_provisionally(struct dig_fit *const fit, const struct dig_observation *const dig)
 {
     struct dig_match match;
-    if (find_nearest(fit, 1, dig, &match) != DIG_OK || refine(fit, 1, dig, &match) != DIG_OK ||
+    enum dig_status  refined = DIG_OK;
+    if (match_digs(fit, 1, dig, &match, &refined) != DIG_OK || refined != DIG_OK ||
         match.samples == 0) {
         return;
     }

@@ -46,7 +46,7 @@ void dig_fit_publish_basis_as_dug(struct dig_fit *const                fit,
         return;
     }
     if (dig != NULL) {
-        dig_matcher_expect(&table->matcher, table->set, table->lambda, &track->match, trajectory,
+        dig_matcher_expect(&table->matcher, table->lambda, &track->match, trajectory,
                            &dig->approach, expected);
         dig_forecast_along_plain(table->set, trajectory, &dig->approach, expected);
     } else {

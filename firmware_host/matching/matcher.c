@@ -11,10 +11,11 @@ void dig_matcher_set_table(struct dig_matcher *const matcher, const struct dig_c
 {
     assert(matcher != NULL && set != NULL);
     dig_matcher_finish(matcher);
-    matcher->varies = dig_approach_varies_any(set);
+    matcher->set = set;
     for (size_t t = 0; t < set->trajectories; t++) {
         if (dig_approach_varies(set, t)) {
             dig_approach_error_measure(set, t, &matcher->error[t]);
+            matcher->varies = true;
         }
     }
 }
@@ -32,25 +33,24 @@ static bool make_room(struct dig_matcher *const matcher, const size_t bytes)
     return true;
 }
 
-enum dig_status dig_matcher_fit_depth(struct dig_matcher *const         matcher,
-                                      const struct dig_curve_set *const set, const double limit_m,
+enum dig_status dig_matcher_fit_depth(struct dig_matcher *const matcher, const double limit_m,
                                       struct dig_observation *const dig)
 {
-    assert(matcher != NULL && dig != NULL);
-    return make_room(matcher, dig_depth_fit_size(set))
-               ? dig_depth_fit(set, matcher->error, limit_m, matcher->memory, dig)
+    assert(matcher != NULL && matcher->set != NULL && dig != NULL);
+    return make_room(matcher, dig_depth_fit_size(matcher->set))
+               ? dig_depth_fit(matcher->set, matcher->error, limit_m, matcher->memory, dig)
                : DIG_ENOMEM;
 }
 
 // The table at the depths and attacks of the digs; matcher->dig holds the digs along its
 // trajectories. NULL without memory.
-static const struct dig_curve_set *as_dug(struct dig_matcher *const         matcher,
-                                          const struct dig_curve_set *const set, const size_t digs,
+static const struct dig_curve_set *as_dug(struct dig_matcher *const matcher, const size_t digs,
                                           const struct dig_observation dig[])
 {
     assert(digs >= 1 && digs <= DIG_POOL_MAX);
     _Static_assert(DIG_POOL_MAX <= DIG_TRAJECTORY_MAX, "each dig of a pool finds a slot");
-    struct dig_approach_slots slots = { .slots = 0 };
+    const struct dig_curve_set *const set   = matcher->set;
+    struct dig_approach_slots         slots = { .slots = 0 };
     memcpy(matcher->dig, dig, digs * sizeof *dig);
     for (size_t d = 0; d < digs; d++) {
         matcher->dig[d].trajectory =
@@ -61,59 +61,36 @@ static const struct dig_curve_set *as_dug(struct dig_matcher *const         matc
                : NULL;
 }
 
-// What digs are matched with: the table itself, or one made as they were dug.
-struct basis {
-    const struct dig_curve_set   *set; // NULL: no memory
-    const struct dig_observation *dig;
-};
-
-static struct basis basis_of(struct dig_matcher *const         matcher,
-                             const struct dig_curve_set *const set, const size_t digs,
-                             const struct dig_observation dig[])
+enum dig_status dig_matcher_match(struct dig_matcher *const matcher, const size_t digs,
+                                  const struct dig_observation dig[], const double outside_floors,
+                                  const int max_evaluations, struct dig_match *const match,
+                                  enum dig_status *const refined)
 {
-    assert(matcher != NULL);
-    if (matcher->varies) {
-        return (struct basis){ as_dug(matcher, set, digs, dig), matcher->dig };
-    }
-    return (struct basis){ set, dig };
-}
-
-enum dig_status dig_matcher_nearest(struct dig_matcher *const         matcher,
-                                    const struct dig_curve_set *const set, const size_t digs,
-                                    const struct dig_observation dig[], const double outside_floors,
-                                    struct dig_match *const match)
-{
-    const struct basis of = basis_of(matcher, set, digs, dig);
-    if (of.set == NULL) {
+    assert(matcher != NULL && matcher->set != NULL && refined != NULL);
+    const struct dig_curve_set *const set =
+        matcher->varies ? as_dug(matcher, digs, dig) : matcher->set;
+    const struct dig_observation *const as = matcher->varies ? matcher->dig : dig;
+    if (set == NULL) {
         return DIG_ENOMEM;
     }
-    const enum dig_status status = dig_match_nearest(of.set, digs, of.dig, outside_floors, match);
+    const enum dig_status status = dig_match_nearest(set, digs, as, outside_floors, match);
     if (status == DIG_OK) {
-        dig_match_find_weighted(of.set, digs, of.dig, match);
+        dig_match_find_weighted(set, digs, as, match);
+        *refined = dig_fit_refine(set, digs, as, max_evaluations, match);
     }
     return status;
 }
 
-enum dig_status dig_matcher_refine(struct dig_matcher *const         matcher,
-                                   const struct dig_curve_set *const set, const size_t digs,
-                                   const struct dig_observation dig[], const int max_evaluations,
-                                   struct dig_match *const match)
+void dig_matcher_expect(struct dig_matcher *const matcher, const double lambda,
+                        const struct dig_match *const match, const size_t trajectory,
+                        const struct dig_approach *const approach,
+                        struct dig_expected *const       expected)
 {
-    const struct basis of = basis_of(matcher, set, digs, dig);
-    return of.set != NULL ? dig_fit_refine(of.set, digs, of.dig, max_evaluations, match)
-                          : DIG_ENOMEM;
-}
-
-void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_curve_set *const set,
-                        const double lambda, const struct dig_match *const match,
-                        const size_t trajectory, const struct dig_approach *const approach,
-                        struct dig_expected *const expected)
-{
-    assert(matcher != NULL && expected != NULL);
+    assert(matcher != NULL && matcher->set != NULL && expected != NULL);
     expected->valid     = false;
     expected->off_table = false;
-    if (make_room(matcher, dig_approached_size(set, 1))) {
-        dig_forecast_as_dug(set, lambda, match, trajectory, approach, matcher->error,
+    if (make_room(matcher, dig_approached_size(matcher->set, 1))) {
+        dig_forecast_as_dug(matcher->set, lambda, match, trajectory, approach, matcher->error,
                             matcher->memory, expected);
     }
 }
