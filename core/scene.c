@@ -1,9 +1,9 @@
 #include "core/scene.h"
 
 #include "core/bed_plan.h"
-#include "core/canonical.h"
 #include "core/name.h"
 #include "core/sha256.h"
+#include "core/text.h"
 
 #include <assert.h>
 #include <math.h>
@@ -173,53 +173,53 @@ enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_
     return status == DIG_OK ? dig_bed_plan_check(scene, error) : status;
 }
 
-static void add_trajectory(struct dig_canonical *const text, const struct dig_trajectory *const t)
+enum { SIZE = DIG_SCENE_TEXT_SIZE };
+
+static void add_trajectory(char text[const SIZE], const struct dig_trajectory *const t)
 {
-    dig_canonical_add(text, "trajectory=%s\ntheta0_rad=%.17g\nstart_m=%.17g %.17g\n", t->name,
-                      t->theta0_rad, t->start_x_m, t->start_z_m);
+    dig_text_add(SIZE, text, "trajectory=%s\ntheta0_rad=%.17g\nstart_m=%.17g %.17g\n", t->name,
+                 t->theta0_rad, t->start_x_m, t->start_z_m);
     for (size_t i = 0; i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
-        dig_canonical_add(text, "phase=%s %.17g %.17g %.17g %.17g\n", p->name, p->duration_s,
-                          p->vx_mps, p->vz_mps, p->omega_radps);
+        dig_text_add(SIZE, text, "phase=%s %.17g %.17g %.17g %.17g\n", p->name, p->duration_s,
+                     p->vx_mps, p->vz_mps, p->omega_radps);
     }
 }
 
-// NOLINTNEXTLINE(readability-non-const-parameter): written through the struct below
-size_t dig_scene_canonical(const struct dig_scene *const scene, const size_t size, char text[])
+void dig_scene_canonical(const struct dig_scene *const scene, char text[const SIZE])
 {
-    assert(scene != NULL);
-    struct dig_canonical             all = { text, size, 0 };
-    const struct dig_box *const      b   = &scene->box;
-    const struct dig_packing *const  p   = &scene->packing;
-    const struct dig_material *const m   = &scene->material;
+    assert(scene != NULL && text != NULL);
+    const struct dig_box *const      b = &scene->box;
+    const struct dig_packing *const  p = &scene->packing;
+    const struct dig_material *const m = &scene->material;
 
-    dig_canonical_add(&all, "scene=%s\nbucket_width_m=%.17g\n", scene->name, scene->bucket.width_m);
+    text[0] = '\0';
+    dig_text_add(SIZE, text, "scene=%s\nbucket_width_m=%.17g\n", scene->name,
+                 scene->bucket.width_m);
     for (size_t i = 0; i < scene->bucket.points; i++) {
-        dig_canonical_add(&all, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i],
-                          scene->bucket.z_m[i]);
+        dig_text_add(SIZE, text, "profile_m=%.17g %.17g\n", scene->bucket.x_m[i],
+                     scene->bucket.z_m[i]);
     }
-    dig_canonical_add(&all, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m,
-                      b->y_min_m, b->y_max_m, b->z_min_m, b->z_max_m);
-    dig_canonical_add(&all, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction,
-                      p->fill_factor, p->fall_mps, p->settle_s, p->relax_s);
-    dig_canonical_add(&all, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa,
-                      m->poisson, m->restitution, m->characteristic_velocity_mps);
-    dig_canonical_add(&all, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n",
-                      scene->gravity_mps2, scene->time_step_s, scene->output_s);
+    dig_text_add(SIZE, text, "box_m=%.17g %.17g %.17g %.17g %.17g %.17g\n", b->x_min_m, b->x_max_m,
+                 b->y_min_m, b->y_max_m, b->z_min_m, b->z_max_m);
+    dig_text_add(SIZE, text, "packing=%.17g %.17g %.17g %.17g %.17g\n", p->solid_fraction,
+                 p->fill_factor, p->fall_mps, p->settle_s, p->relax_s);
+    dig_text_add(SIZE, text, "material=%.17g %.17g %.17g %.17g %.17g\n", m->diameter_m, m->young_Pa,
+                 m->poisson, m->restitution, m->characteristic_velocity_mps);
+    dig_text_add(SIZE, text, "gravity_mps2=%.17g\ntime_step_s=%.17g\noutput_s=%.17g\n",
+                 scene->gravity_mps2, scene->time_step_s, scene->output_s);
     for (size_t i = 0; i < scene->trajectories; i++) {
-        add_trajectory(&all, &scene->trajectory[i]);
+        add_trajectory(text, &scene->trajectory[i]);
     }
     if (m->young_at_kgpm3 > 0.0) {
-        dig_canonical_add(&all, "young_at_kgpm3=%.17g\n", m->young_at_kgpm3);
+        dig_text_add(SIZE, text, "young_at_kgpm3=%.17g\n", m->young_at_kgpm3);
     }
-    dig_bed_plan_canonical(scene, &all);
-    return all.length;
+    dig_bed_plan_canonical(scene, text);
 }
 
 void dig_scene_hash(const struct dig_scene *const scene, char hex[const 65])
 {
-    char         text[DIG_SCENE_TEXT_SIZE];
-    const size_t length = dig_scene_canonical(scene, sizeof text, text);
-    assert(length < sizeof text);
-    dig_sha256_hex(text, length, hex);
+    char text[SIZE];
+    dig_scene_canonical(scene, text);
+    dig_sha256_hex(text, strlen(text), hex);
 }

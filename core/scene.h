@@ -187,12 +187,11 @@ const struct dig_trajectory *dig_scene_find(const struct dig_scene *scene, const
 DIG_MUST_CHECK enum dig_status dig_scene_check(const struct dig_scene *scene,
                                                struct dig_error       *error);
 
-#define DIG_SCENE_TEXT_SIZE                                                                        \
-    16384 // eight trajectories of eight phases and a bed of everything need less
+#define DIG_SCENE_TEXT_SIZE 32768 // a scene of everything, in its longest numbers, needs 25844
 
 /// Writes the canonical text the scene's identity is the SHA-256 of: every field that changes a
-/// curve, numbers as %.17g, one `key=value` a line. Returns the length it needs, as snprintf does.
-size_t dig_scene_canonical(const struct dig_scene *scene, size_t size, char text[]);
+/// curve, numbers as %.17g, one `key=value` a line.
+void dig_scene_canonical(const struct dig_scene *scene, char text[DIG_SCENE_TEXT_SIZE]);
 
 /// The scene's identity: lower-case hex SHA-256 of its canonical text.
 void dig_scene_hash(const struct dig_scene *scene, char hex[65]);

@@ -163,7 +163,7 @@ static enum dig_status insert_scene(sqlite3 *const db, const char *const path,
 {
     struct dig_table_head head;
     char                  text[DIG_SCENE_TEXT_SIZE];
-    (void)dig_scene_canonical(scene, sizeof text, text);
+    dig_scene_canonical(scene, text);
     dig_table_head_of(scene, &head);
 
     sqlite3_stmt         *s      = NULL;
