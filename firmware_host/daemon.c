@@ -117,11 +117,7 @@ static void connect_threads(struct dig_daemon *const d)
                             .tables  = &d->tables,
                             .log     = &d->fit_log },
         .stop           = &d->stop,
-        .table          = { .set        = d->loaded.set,
-                            .generation = 1,
-                            .lambda =
-                                d->loaded.machine.link[DIG_JOINT_BUCKET].length_m / d->loaded.set->tooth_m,
-                            .tick_generation      = &d->loop.generation,
+        .matcher        = { .tick_generation      = &d->loop.generation,
                             .publisher_generation = &d->publisher_generation },
         .early          = &d->early,
     };
@@ -183,8 +179,10 @@ enum dig_status dig_daemon_create(const char *const path, struct dig_daemon **co
         return status;
     }
     connect_threads(d);
+    dig_matcher_exchange(&d->fit.matcher, d->loaded.set,
+                         d->loaded.machine.link[DIG_JOINT_BUCKET].length_m /
+                             d->loaded.set->tooth_m);
     d->loaded.set = NULL; // the matcher's from now on, as it may exchange it
-    dig_matcher_set_table(&d->fit.table.matcher, d->fit.table.set);
     dig_fit_restore(&d->fit);
     *daemon = d;
     return DIG_OK;
@@ -194,7 +192,7 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
 {
     if (daemon != NULL) {
         dig_input_destroy(&daemon->input);
-        dig_fit_finish(&daemon->fit);
+        dig_matcher_finish(&daemon->fit.matcher);
         free(daemon->estimator);
         for (size_t i = 0; i < DIGS; i++) {
             free(daemon->dig_memory[i]);
@@ -207,11 +205,11 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
 void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(const char *line))
 {
     assert(d != NULL);
-    dig_describe(&d->loaded, d->fit.table.set, d->input.name, say);
+    dig_describe(&d->loaded, d->fit.matcher.set, d->input.name, say);
 }
 
 void dig_daemon_describe_json(const struct dig_daemon *const d, FILE *const file)
 {
     assert(d != NULL);
-    dig_describe_json(&d->loaded, d->fit.table.set, d->input.name, file);
+    dig_describe_json(&d->loaded, d->fit.matcher.set, d->input.name, file);
 }

@@ -98,9 +98,10 @@ static inline struct dig_loop_ports wires_loop_ports(struct wires *const w)
     };
 }
 
-/// A matcher between them, at the first table.
+/// A matcher between them, at the first table; no dig goes on yet.
 static inline void wires_init_fit(struct wires *const w, const struct dig_config *const config,
-                                  struct dig_curve_set *const set, struct dig_fit *const fit)
+                                  struct dig_curve_set *const   set,
+                                  struct dig_early_match *const early, struct dig_fit *const fit)
 {
     *fit = (struct dig_fit){
         .config         = config,
@@ -112,22 +113,13 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
                             .results = &w->results,
                             .tables  = &w->tables,
                             .log     = &w->log },
-        .table          = { .set                  = set,
-                            .generation           = 1,
-                            .lambda               = WIRES_LAMBDA,
-                            .tick_generation      = &w->tick_generation,
+        .matcher        = { .tick_generation      = &w->tick_generation,
                             .publisher_generation = &w->publisher_generation },
+        .early          = early,
     };
-    dig_matcher_set_table(&fit->table.matcher, set);
-}
-
-/// That matcher looks at the dig going on, too; none does yet.
-static inline void wires_init_early(struct wires *const w, struct dig_early_match *const early,
-                                    struct dig_fit *const fit)
-{
-    fit->early       = early;
     early->estimates = &w->estimates;
-    dig_early_match_clear(early, fit->table.set);
+    dig_early_match_clear(early, set);
+    dig_matcher_exchange(&fit->matcher, set, WIRES_LAMBDA);
 }
 
 /// What a tick tells of the bucket at a pose of the rig and of its moment there, with the noise of

@@ -17,7 +17,7 @@
 
 static const char *trajectory_name(const struct dig_fit *const fit, const int trajectory)
 {
-    return fit->table.set->trajectory[trajectory].name;
+    return fit->matcher.set->trajectory[trajectory].name;
 }
 
 static bool identifies(const struct dig_fit *const fit, const int trajectory)
@@ -40,8 +40,7 @@ static const struct dig_expected *forecast_for(struct dig_fit *const            
     if (dig_approach_is_plain(&dig->approach) || !fit->track.valid) {
         return &fit->basis.forecast.expected[t];
     }
-    dig_matcher_expect(&fit->table.matcher, fit->table.lambda, &fit->track.match, t, &dig->approach,
-                       &fit->expected);
+    dig_matcher_expect(&fit->matcher, &fit->track.match, t, &dig->approach, &fit->expected);
     return &fit->expected;
 }
 
@@ -64,7 +63,7 @@ static enum dig_status match_digs(struct dig_fit *const fit, const size_t digs,
                                   const struct dig_observation dig[], struct dig_match *const match,
                                   enum dig_status *const refined)
 {
-    return dig_matcher_match(&fit->table.matcher, digs, dig, fit->config->estimator.outside_floors,
+    return dig_matcher_match(&fit->matcher, digs, dig, fit->config->estimator.outside_floors,
                              fit->config->match_evaluations, match, refined);
 }
 
@@ -86,17 +85,14 @@ static enum dig_status match_pool(struct dig_fit *const fit, struct dig_pool *co
 static bool complete(struct dig_fit *const fit, struct dig_observation *const dig)
 {
     if (fit->machine != NULL) {
-        dig_inertia_error_add(fit->machine, fit->table.lambda, dig);
+        dig_inertia_error_add(fit->machine, fit->matcher.lambda, dig);
     }
-    return dig_matcher_fit_depth(&fit->table.matcher, fit->config->estimator.path_limit_m, dig) ==
-           DIG_OK;
+    return dig_matcher_fit_depth(&fit->matcher, fit->config->estimator.path_limit_m, dig) == DIG_OK;
 }
 
 static void clear_provisional(struct dig_fit *const fit)
 {
-    if (fit->early != NULL) {
-        fit->early->provisional = (struct dig_gravel_track){ .any = false };
-    }
+    fit->early->provisional = (struct dig_gravel_track){ .any = false };
 }
 
 static void match_dig(struct dig_fit *const fit, const struct dig_observation *const dig)
@@ -133,7 +129,7 @@ static void match_dig(struct dig_fit *const fit, const struct dig_observation *c
         log_dig(fit, dig, "nearest entry only", refined);
     }
     fit->pool  = pool;
-    fit->track = dig_gravel_track_make(fit->table.set, &match, dig, dig_input_now_ns(),
+    fit->track = dig_gravel_track_make(fit->matcher.set, &match, dig, dig_input_now_ns(),
                                        &fit->track_settings);
     if (gating == DIG_ACCEPTED) {
         fit->track.drift = gated.drift;
@@ -157,7 +153,7 @@ static void match_provisionally(struct dig_fit *const fit, const struct dig_obse
     struct dig_gravel_track *const         provisional = &fit->early->provisional;
 
     *provisional =
-        dig_gravel_track_make(fit->table.set, &match, dig, dig_input_now_ns(), &settings);
+        dig_gravel_track_make(fit->matcher.set, &match, dig, dig_input_now_ns(), &settings);
     provisional->going_on = true;
     if (!fit->track.valid) {
         dig_fit_publish_basis(fit, provisional);
@@ -170,9 +166,9 @@ static void match_provisionally(struct dig_fit *const fit, const struct dig_obse
 static void observe_early(struct dig_fit *const fit)
 {
     struct dig_early_match *const     early = fit->early;
-    const struct dig_curve_set *const set   = fit->table.set;
+    const struct dig_curve_set *const set   = fit->matcher.set;
     struct dig_observation            dig;
-    bool observed = dig_early_match_observe(early, set, fit->table.lambda, fit->config, &dig);
+    bool observed = dig_early_match_observe(early, set, fit->matcher.lambda, fit->config, &dig);
     if (observed && !complete(fit, &dig)) {
         early->off_table_trajectory = dig.trajectory;
         observed                    = false;
@@ -239,7 +235,7 @@ static void count_unobserved(struct dig_fit *const                fit,
 {
     int    trajectory = -1;
     double progress   = 0.0;
-    if (dig_recorded_dig_was_aborted(fit->table.set, &fit->config->estimator, recording,
+    if (dig_recorded_dig_was_aborted(fit->matcher.set, &fit->config->estimator, recording,
                                      &trajectory, &progress)) {
         count_aborted(fit, recording->dig_count, trajectory, progress);
     } else {
@@ -250,7 +246,7 @@ static void count_unobserved(struct dig_fit *const                fit,
 void dig_fit_take(struct dig_fit *const fit, const struct dig_observation *const dig)
 {
     assert(fit != NULL && dig != NULL);
-    if (dig->trajectory < 0 || (size_t)dig->trajectory >= fit->table.set->trajectories) {
+    if (dig->trajectory < 0 || (size_t)dig->trajectory >= fit->matcher.set->trajectories) {
         return;
     }
     count_ending(fit, dig);
@@ -271,7 +267,7 @@ void dig_fit_restore(struct dig_fit *const fit)
     if (path[0] == '\0' || access(path, F_OK) != 0) {
         return;
     }
-    if (dig_gravel_state_read(path, fit->table.set, dig_input_now_ns(), &fit->track_settings,
+    if (dig_gravel_state_read(path, fit->matcher.set, dig_input_now_ns(), &fit->track_settings,
                               &fit->track, &fit->pool, &error) == DIG_OK) {
         dig_fit_publish_track(fit);
     } else {
@@ -287,7 +283,7 @@ static bool take_finished(struct dig_fit *const fit)
         return false;
     }
     struct dig_observation dig;
-    if (dig_recorded_dig_observe(fit->table.set, &fit->config->estimator, recording, &dig) ==
+    if (dig_recorded_dig_observe(fit->matcher.set, &fit->config->estimator, recording, &dig) ==
             DIG_OK &&
         complete(fit, &dig)) {
         dig_fit_take(fit, &dig);
@@ -303,21 +299,17 @@ bool dig_fit_once(struct dig_fit *const fit)
 {
     assert(fit != NULL);
     atomic_store(&fit->busy, true);
-    dig_table_in_use_retire(&fit->table);
-    if (fit->table.retiring == NULL && atomic_exchange(&fit->reload, false)) {
+    dig_matcher_retire(&fit->matcher);
+    if (fit->matcher.retiring == NULL && atomic_exchange(&fit->reload, false)) {
         dig_fit_reload(fit);
     }
     if (dig_gravel_track_expire(&fit->track, dig_input_now_ns())) {
         dig_fit_publish_track(fit);
     }
     // Estimates first: once they show the end of a dig, its recording is in the queue.
-    if (fit->early != NULL) {
-        observe_early(fit);
-    }
+    observe_early(fit);
     const bool taken = take_finished(fit);
-    if (fit->early != NULL) {
-        end_early(fit);
-    }
+    end_early(fit);
     atomic_store(&fit->busy, false);
     return taken;
 }
@@ -331,10 +323,4 @@ void dig_fit_run(struct dig_fit *const fit)
             (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, NULL);
         }
     }
-}
-
-void dig_fit_finish(struct dig_fit *const fit)
-{
-    assert(fit != NULL);
-    dig_table_in_use_finish(&fit->table);
 }

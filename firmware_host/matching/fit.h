@@ -11,7 +11,7 @@
 #include "firmware_host/config/config.h"
 #include "firmware_host/matching/early_match.h"
 #include "firmware_host/matching/gravel_track.h"
-#include "firmware_host/matching/table_in_use.h"
+#include "firmware_host/matching/matcher.h"
 #include "firmware_host/tick/loop.h"
 
 #include <stdatomic.h>
@@ -49,6 +49,7 @@ struct dig_fit_counters {
     atomic_llong reloads, reloads_refused;
 };
 
+/// What it owns is its matcher's.
 struct dig_fit {
     // fixed at start
     const char                      *config_path; // read again on a reload
@@ -64,8 +65,8 @@ struct dig_fit {
     struct dig_fit_counters count;
 
     // the thread's own
-    struct dig_table_in_use     table;
-    struct dig_early_match     *early; // NULL: digs are matched when they are over
+    struct dig_matcher          matcher;
+    struct dig_early_match     *early;
     struct dig_gravel_track     track;
     struct dig_pool             pool;         // digs the track is matched from
     struct dig_prediction_basis basis;        // last one published to the tick
@@ -88,8 +89,5 @@ bool dig_fit_once(struct dig_fit *fit);
 
 /// The thread: a turn every 20 ms until *stop.
 void dig_fit_run(struct dig_fit *fit);
-
-/// Frees the tables.
-void dig_fit_finish(struct dig_fit *fit);
 
 #endif // DIG_FIRMWARE_HOST_MATCHING_FIT_H

@@ -21,17 +21,17 @@ void dig_fit_log(struct dig_fit *const fit, const char *const format, ...)
 void dig_fit_publish_basis(struct dig_fit *const fit, const struct dig_gravel_track *const track)
 {
     assert(fit != NULL && track != NULL);
-    const struct dig_table_in_use *const table = &fit->table;
-    struct dig_prediction_basis *const   basis = &fit->basis;
-    basis->set                                 = table->set;
-    basis->generation                          = table->generation;
+    const struct dig_matcher *const    matcher = &fit->matcher;
+    struct dig_prediction_basis *const basis   = &fit->basis;
+    basis->set                                 = matcher->set;
+    basis->generation                          = matcher->generation;
     basis->known                               = track->valid;
     basis->outside                             = track->match.outside;
     basis->dig_count                           = track->match.dig_count;
     basis->expires_ns                          = track->any ? track->expires_ns : 0;
-    dig_forecast_make(table->set, table->lambda, &track->match, &basis->forecast);
+    dig_forecast_make(matcher->set, matcher->lambda, &track->match, &basis->forecast);
 
-    dig_latest_put(dig_table_in_use_by_tick(table) ? fit->ports.basis : fit->ports.table, basis);
+    dig_latest_put(dig_matcher_is_of_tick(matcher) ? fit->ports.basis : fit->ports.table, basis);
     fit->basis_as_dug = false;
 }
 
@@ -40,15 +40,14 @@ void dig_fit_publish_basis_as_dug(struct dig_fit *const                fit,
                                   const size_t trajectory, const struct dig_observation *const dig)
 {
     assert(fit != NULL && track != NULL);
-    struct dig_table_in_use *const table    = &fit->table;
-    struct dig_expected *const     expected = &fit->basis.forecast.expected[trajectory];
-    if (!track->valid || (dig == NULL && expected->off_table) || !dig_table_in_use_by_tick(table)) {
+    struct dig_matcher *const  matcher  = &fit->matcher;
+    struct dig_expected *const expected = &fit->basis.forecast.expected[trajectory];
+    if (!track->valid || (dig == NULL && expected->off_table) || !dig_matcher_is_of_tick(matcher)) {
         return;
     }
     if (dig != NULL) {
-        dig_matcher_expect(&table->matcher, table->lambda, &track->match, trajectory,
-                           &dig->approach, expected);
-        dig_forecast_along_plain(table->set, trajectory, &dig->approach, expected);
+        dig_matcher_expect(matcher, &track->match, trajectory, &dig->approach, expected);
+        dig_forecast_along_plain(matcher->set, trajectory, &dig->approach, expected);
     } else {
         expected->valid     = false;
         expected->off_table = true;
@@ -60,18 +59,19 @@ void dig_fit_publish_basis_as_dug(struct dig_fit *const                fit,
 void dig_fit_publish_track(struct dig_fit *const fit)
 {
     assert(fit != NULL);
-    const struct dig_table_in_use *const table = &fit->table;
+    const struct dig_matcher *const matcher = &fit->matcher;
     dig_fit_publish_basis(fit, &fit->track);
     if (!fit->track.any) {
         return;
     }
     struct dig_fit_result result = { .track = fit->track };
-    const int hint = fit->track.valid ? dig_gravel_track_hint(table->set, &fit->basis.forecast,
-                                                              table->lambda, &result.hint_J_per_kg)
-                                      : -1;
+    const int             hint   = fit->track.valid
+                                       ? dig_gravel_track_hint(matcher->set, &fit->basis.forecast,
+                                                               matcher->lambda, &result.hint_J_per_kg)
+                                       : -1;
     if (hint >= 0) {
         (void)snprintf(result.hint_trajectory, sizeof result.hint_trajectory, "%s",
-                       table->set->trajectory[hint].name);
+                       matcher->set->trajectory[hint].name);
     }
     (void)dig_ring_push(fit->ports.results, &result);
 }
@@ -82,7 +82,7 @@ void dig_fit_save_state(struct dig_fit *const fit)
     const char *const path  = fit->config->match_state.text;
     struct dig_error  error = { "" };
     if (path[0] != '\0' &&
-        dig_gravel_state_write(path, &fit->track, fit->table.set, &fit->pool, &error) != DIG_OK) {
+        dig_gravel_state_write(path, &fit->track, fit->matcher.set, &fit->pool, &error) != DIG_OK) {
         dig_fit_log(fit, "%s", error.text);
     }
 }

@@ -54,19 +54,17 @@ void dig_fit_reload(struct dig_fit *const fit)
         atomic_fetch_add(&fit->count.reloads_refused, 1);
         return;
     }
-    if (!has_same_trajectories(fit->table.set, set)) {
+    if (!has_same_trajectories(fit->matcher.set, set)) {
         fit->pool.digs = 0;
     }
-    dig_table_in_use_exchange(&fit->table, set,
-                              fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
+    dig_matcher_exchange(&fit->matcher, set,
+                         fit->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
     fit->basis.machine = corrected;
-    if (fit->early != NULL) {
-        dig_early_match_clear(fit->early, set);
-    }
+    dig_early_match_clear(fit->early, set);
     if (!dig_gravel_track_set_table(&fit->track, set)) {
         dig_gravel_track_invalidate(&fit->track, "another table");
     }
-    const struct dig_table_update update = { set, fit->table.generation };
+    const struct dig_table_update update = { set, fit->matcher.generation };
     dig_latest_put(fit->ports.tables, &update);
     dig_fit_publish_track(fit);
     dig_fit_log(fit, "%s", "");

@@ -2,21 +2,42 @@
 
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/depth.h"
+#include "tables/load.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-void dig_matcher_set_table(struct dig_matcher *const matcher, const struct dig_curve_set *const set)
+void dig_matcher_exchange(struct dig_matcher *const matcher, struct dig_curve_set *const set,
+                          const double lambda)
 {
-    assert(matcher != NULL && set != NULL);
-    dig_matcher_finish(matcher);
-    matcher->set = set;
+    assert(matcher != NULL && set != NULL && matcher->retiring == NULL);
+    matcher->retiring = matcher->set;
+    matcher->set      = set;
+    matcher->lambda   = lambda;
+    matcher->generation++;
+    matcher->varies = false;
     for (size_t t = 0; t < set->trajectories; t++) {
         if (dig_approach_varies(set, t)) {
             dig_approach_error_measure(set, t, &matcher->error[t]);
             matcher->varies = true;
         }
+    }
+}
+
+bool dig_matcher_is_of_tick(const struct dig_matcher *const matcher)
+{
+    assert(matcher != NULL);
+    return atomic_load(matcher->tick_generation) == matcher->generation;
+}
+
+void dig_matcher_retire(struct dig_matcher *const matcher)
+{
+    assert(matcher != NULL);
+    if (matcher->retiring != NULL && dig_matcher_is_of_tick(matcher) &&
+        atomic_load(matcher->publisher_generation) == matcher->generation) {
+        dig_curve_set_destroy(matcher->retiring);
+        matcher->retiring = NULL;
     }
 }
 
@@ -81,24 +102,24 @@ enum dig_status dig_matcher_match(struct dig_matcher *const matcher, const size_
     return status;
 }
 
-void dig_matcher_expect(struct dig_matcher *const matcher, const double lambda,
-                        const struct dig_match *const match, const size_t trajectory,
-                        const struct dig_approach *const approach,
-                        struct dig_expected *const       expected)
+void dig_matcher_expect(struct dig_matcher *const matcher, const struct dig_match *const match,
+                        const size_t trajectory, const struct dig_approach *const approach,
+                        struct dig_expected *const expected)
 {
     assert(matcher != NULL && matcher->set != NULL && expected != NULL);
     expected->valid     = false;
     expected->off_table = false;
     if (make_room(matcher, dig_approached_size(matcher->set, 1))) {
-        dig_forecast_as_dug(matcher->set, lambda, match, trajectory, approach, matcher->error,
-                            matcher->memory, expected);
+        dig_forecast_as_dug(matcher->set, matcher->lambda, match, trajectory, approach,
+                            matcher->error, matcher->memory, expected);
     }
 }
 
 void dig_matcher_finish(struct dig_matcher *const matcher)
 {
-    if (matcher != NULL) {
-        free(matcher->memory);
-        *matcher = (struct dig_matcher){ .memory = NULL };
-    }
+    assert(matcher != NULL);
+    dig_curve_set_destroy(matcher->retiring);
+    dig_curve_set_destroy(matcher->set);
+    free(matcher->memory);
+    *matcher = (struct dig_matcher){ .set = NULL };
 }

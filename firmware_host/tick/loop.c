@@ -71,14 +71,6 @@ static void exchange_digs(struct dig_loop *const loop)
     }
 }
 
-// After exchange_digs(): a reader that finds the end of a dig here finds its recording there.
-static void publish_estimate(struct dig_loop *const loop)
-{
-    if (loop->ports.estimates != NULL) {
-        (void)dig_ring_push(loop->ports.estimates, &loop->estimate);
-    }
-}
-
 // Takes a new forecast at once, another table and machine only between two digs.
 static void take_basis(struct dig_loop *const loop)
 {
@@ -203,8 +195,9 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
         if (dig_assembler_take(&loop->assembler, &reading, &sample)) {
             const bool estimated = take_sample(loop, &sample, reading.time_ns, now_ns);
             exchange_digs(loop);
+            // After the digs: a reader that finds the end of a dig here finds its recording there.
             if (estimated) {
-                publish_estimate(loop);
+                (void)dig_ring_push(loop->ports.estimates, &loop->estimate);
             }
         }
     }

@@ -87,8 +87,8 @@ struct dig_loop_ports {
     struct dig_ring   *digs;        // out: struct dig_recorded_dig *, finished digs
     struct dig_latest *predictions; // out: struct dig_prediction_record
     struct dig_latest *tick_status; // out: struct dig_tick_status
-    // out: struct dig_estimate, for matching the dig in progress; NULL: nobody reads them. What
-    // does not fit is dropped: the reader then sees less of the dig, and nothing wrong.
+    // out: struct dig_estimate, for matching the dig in progress. What does not fit is dropped: the
+    // reader then sees less of the dig, and nothing wrong.
     struct dig_ring *estimates;
 };
 

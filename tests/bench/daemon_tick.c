@@ -88,14 +88,11 @@ static void connect(struct bench *const b)
         b->buffer[i] = calloc(1, dig_recorded_dig_size());
         (void)dig_ring_push(&b->wires.spares, &b->buffer[i]);
     }
-    b->early.estimates = &b->wires.estimates;
-    dig_early_match_clear(&b->early, b->set);
-    wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
+    wires_init_fit(&b->wires, &b->config, b->set, &b->early, &b->fit);
     b->fit.machine                  = &b->machine;
-    b->fit.early                    = &b->early;
-    b->fit.table.lambda             = b->machine.link[DIG_JOINT_BUCKET].length_m / b->set->tooth_m;
+    b->fit.matcher.lambda           = b->machine.link[DIG_JOINT_BUCKET].length_m / b->set->tooth_m;
     b->fit.track_settings.expires_s = 1e9;
-    b->fit.table.tick_generation    = &b->loop.generation;
+    b->fit.matcher.tick_generation  = &b->loop.generation;
 }
 
 static struct bench *create(char *argv[])

@@ -16,10 +16,11 @@
 #define TRAJECTORIES 2
 
 struct bench {
-    struct dig_config config;
-    struct cube_table cube;
-    struct wires      wires;
-    struct dig_fit    fit;
+    struct dig_config      config;
+    struct cube_table      cube;
+    struct wires           wires;
+    struct dig_early_match early;
+    struct dig_fit         fit;
 };
 
 static inline double bench_moment_Nm(const int gravel, const int point)
@@ -58,7 +59,7 @@ static inline struct bench *bench_create(void)
     dig_outlines_draw(set);
     b->config = wires_config();
     wires_init(&b->wires);
-    wires_init_fit(&b->wires, &b->config, set, &b->fit);
+    wires_init_fit(&b->wires, &b->config, set, &b->early, &b->fit);
     return b;
 }
 

@@ -37,8 +37,7 @@ static struct bench *bench_create(void)
     b->buffer = calloc(1, sizeof *b->buffer);
     b->config = wires_config();
     wires_init(&b->wires);
-    wires_init_fit(&b->wires, &b->config, b->set, &b->fit);
-    wires_init_early(&b->wires, &b->early, &b->fit);
+    wires_init_fit(&b->wires, &b->config, b->set, &b->early, &b->fit);
     dig_live_recording_clear(&b->live, b->set);
     return b;
 }

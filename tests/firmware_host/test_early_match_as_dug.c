@@ -39,9 +39,7 @@ static struct bench *bench_create(void)
     struct dig_curve_set *const set = &b->table.cube.set;
     b->config                       = wires_config();
     wires_init(&b->wires);
-    wires_init_fit(&b->wires, &b->config, set, &b->fit);
-    wires_init_early(&b->wires, &b->early, &b->fit);
-    dig_matcher_set_table(&b->fit.table.matcher, set);
+    wires_init_fit(&b->wires, &b->config, set, &b->early, &b->fit);
 
     struct dig_observation simple = { .dig_count = 1, .first = 0.0, .last = 1.0 };
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -57,7 +55,7 @@ static struct bench *bench_create(void)
 
 static void bench_destroy(struct bench *const b)
 {
-    dig_matcher_finish(&b->fit.table.matcher);
+    free(b->fit.matcher.memory);
     free(b);
 }
 

@@ -9,10 +9,11 @@
 #include <stdlib.h>
 
 struct bench {
-    struct dig_config     config;
-    struct approach_table table;
-    struct wires          wires;
-    struct dig_fit        fit;
+    struct dig_config      config;
+    struct approach_table  table;
+    struct wires           wires;
+    struct dig_early_match early;
+    struct dig_fit         fit;
 };
 
 static struct bench *bench_create(void)
@@ -23,14 +24,13 @@ static struct bench *bench_create(void)
     approach_table_init(&b->table, CUBE_GRAVELS, 3, way, approach_growing, 0.05, 3);
     b->config = wires_config();
     wires_init(&b->wires);
-    wires_init_fit(&b->wires, &b->config, &b->table.cube.set, &b->fit);
-    dig_matcher_set_table(&b->fit.table.matcher, &b->table.cube.set);
+    wires_init_fit(&b->wires, &b->config, &b->table.cube.set, &b->early, &b->fit);
     return b;
 }
 
 static void bench_destroy(struct bench *const b)
 {
-    dig_matcher_finish(&b->fit.table.matcher);
+    free(b->fit.matcher.memory);
     free(b);
 }
 

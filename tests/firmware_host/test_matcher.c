@@ -23,16 +23,15 @@ TEST(another_table_taken_up_is_the_one_that_is_matched)
 {
     struct dig_curve_set *const set     = made_table(&options);
     struct dig_matcher          matcher = { .memory = NULL };
-    dig_matcher_set_table(&matcher, set);
+    dig_matcher_exchange(&matcher, set, 1.0);
     const int before = match_by(&matcher).nearest;
 
     struct dig_curve_set *const other                                   = made_table(&options);
     other->packings[(size_t)before * MADE_TRAJECTORIES + MADE_SIMPLE_A] = 0;
-    dig_matcher_set_table(&matcher, other);
+    dig_matcher_exchange(&matcher, other, 1.0);
     made_table_destroy(set);
     assert_int_not_equal(match_by(&matcher).nearest, before);
 
-    dig_matcher_finish(&matcher);
-    dig_matcher_finish(NULL);
+    free(matcher.memory);
     made_table_destroy(other);
 }
