@@ -86,6 +86,8 @@ struct work {
     struct dig_error             *error;
 };
 
+#define REFUSE(work, ...) dig_yaml_refuse((work)->path, (work)->error, __VA_ARGS__)
+
 static bool is_given(const struct work *const work, const char *const key)
 {
     return dig_yaml_line(work->path, key) > 0;
@@ -108,10 +110,9 @@ static enum dig_status take_numbers(const struct work *const work)
             continue;
         }
         if (!(value >= n->least && value <= n->most)) {
-            return dig_yaml_refuse(work->path, work->error,
-                                   n->whole ? "%s: %.0f, expected %.0f … %.0f"
-                                            : "%s: %g, expected %g … %g",
-                                   n->key, value, n->least, n->most);
+            return REFUSE(work,
+                          n->whole ? "%s: %.0f, expected %.0f … %.0f" : "%s: %g, expected %g … %g",
+                          n->key, value, n->least, n->most);
         }
         if (n->whole) {
             *(int *)to = (int)value;
@@ -128,8 +129,7 @@ static enum dig_status take_text(const struct work *const work, const char *cons
 {
     const int length = from != NULL ? snprintf(to, size, "%s", from) : 0;
     if (length < 0 || (size_t)length >= size) {
-        return dig_yaml_refuse(work->path, work->error, "%s: %d characters, expected at most %zu",
-                               key, length, size - 1);
+        return REFUSE(work, "%s: %d characters, expected at most %zu", key, length, size - 1);
     }
     return DIG_OK;
 }
@@ -154,7 +154,7 @@ static enum dig_status take_texts(const struct work *const work)
     for (size_t i = 0; i < CYAML_ARRAY_LEN(path); i++) {
         if (path[i].from != NULL && !is_passed_over(work, path[i].key) &&
             !dig_path_beside(work->path, path[i].from, sizeof path[i].to->text, path[i].to->text)) {
-            return dig_yaml_refuse(work->path, work->error, "%s: too long a path", path[i].key);
+            return REFUSE(work, "%s: too long a path", path[i].key);
         }
     }
     const enum dig_status status =
@@ -174,8 +174,7 @@ static enum dig_status take_address(const struct work *const work, const char *c
     const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
     if (length == 0 || length >= sizeof address->host || end == NULL || end == colon + 1 ||
         *end != '\0' || port < 1 || port > 65535) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
+        return REFUSE(work, "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
     }
     const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
     memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
@@ -194,8 +193,7 @@ static enum dig_status take_parity(const struct work *const work, const char *co
             return DIG_OK;
         }
     }
-    return dig_yaml_refuse(work->path, work->error,
-                           "input.modbus.parity: \"%.20s\", expected none, even or odd", text);
+    return REFUSE(work, "input.modbus.parity: \"%.20s\", expected none, even or odd", text);
 }
 
 static enum dig_status take_server(const struct work *const work)
@@ -205,8 +203,7 @@ static enum dig_status take_server(const struct work *const work)
     const bool                          tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
     const char *const                   key = tcp ? "input.modbus.address" : "input.modbus.device";
     if ((tcp ? text->address : text->device) == NULL) {
-        return dig_yaml_refuse(work->path, work->error, "%s: missing, expected %s", key,
-                               tcp ? "HOST:PORT" : "a serial device");
+        return REFUSE(work, "%s: missing, expected %s", key, tcp ? "HOST:PORT" : "a serial device");
     }
     const enum dig_status status =
         tcp ? take_address(work, text->address, address)
@@ -221,8 +218,8 @@ static enum dig_status take_input(const struct work *const work)
     enum dig_status          status   = DIG_OK;
     double                   sample_s = config->modbus.poll_s;
     if (!is_given(work, parts[config->kind])) {
-        return dig_yaml_refuse(work->path, work->error, "%s: missing, expected the settings of %s",
-                               parts[config->kind], dig_config_kinds[config->kind].str);
+        return REFUSE(work, "%s: missing, expected the settings of %s", parts[config->kind],
+                      dig_config_kinds[config->kind].str);
     }
     switch (config->kind) {
     case DIG_INPUT_CAN:
@@ -235,9 +232,8 @@ static enum dig_status take_input(const struct work *const work)
     case DIG_INPUT_REPLAY:
         sample_s = 0.005; // what digrig records at
         if (is_given(work, "time_scale")) {
-            return dig_yaml_refuse(
-                work->path, work->error,
-                "time_scale: given with a replay, expected input.replay.speed alone");
+            return REFUSE(work,
+                          "time_scale: given with a replay, expected input.replay.speed alone");
         }
         config->time_scale = config->replay_speed;
         break;
@@ -265,7 +261,7 @@ static enum dig_status take(const struct work *const work)
     status                 = status == DIG_OK ? take_input(work) : status;
     const char *reason     = NULL;
     if (status == DIG_OK && dig_estimator_settings_check(&config->estimator, &reason) != DIG_OK) {
-        return dig_yaml_refuse(work->path, work->error, "estimator: %s", reason);
+        return REFUSE(work, "estimator: %s", reason);
     }
     return status;
 }

@@ -21,13 +21,11 @@ static enum dig_status find_place(const struct dig_config_map_work *const work,
         return dig_config_map_find_can(work, at, text->message, text->signal, entry);
     }
     if (text->reg == NULL) {
-        return dig_yaml_refuse(
-            work->path, work->error,
-            "%s.register: missing, expected the register's address, counted from 0", at);
+        return REFUSE(work, "%s.register: missing, expected the register's address, counted from 0",
+                      at);
     }
     if (*text->reg > 0xFFFF || *text->reg + dig_register_words(entry->type) > 0x10000) {
-        return dig_yaml_refuse(work->path, work->error, "%s.register: %u, expected 0 … 65535", at,
-                               *text->reg);
+        return REFUSE(work, "%s.register: %u, expected 0 … 65535", at, *text->reg);
     }
     entry->reg = *text->reg;
     return DIG_OK;
@@ -45,27 +43,22 @@ static enum dig_status read_signal(const struct dig_config_map_work *const work,
         for (int s = 0; s < DIG_SIGNALS; s++) {
             dig_guess_try(&guess, dig_signal_name((enum dig_signal)s));
         }
-        return dig_yaml_refuse(
-            work->path, work->error,
-            "%s.name: \"%s\", expected a column of a machine recording (boom_rad, …)%s", at,
-            text->name, dig_guess_text(&guess, "", best));
+        return REFUSE(work,
+                      "%s.name: \"%s\", expected a column of a machine recording (boom_rad, …)%s",
+                      at, text->name, dig_guess_text(&guess, "", best));
     }
     if (work->map->entry[signal].used) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s.name: \"%s\" again, expected every signal once", at, text->name);
+        return REFUSE(work, "%s.name: \"%s\" again, expected every signal once", at, text->name);
     }
     if (text->sign != 0 && text->sign != 1 && text->sign != -1) {
-        return dig_yaml_refuse(work->path, work->error, "%s.sign: %d, expected 1 or -1", at,
-                               text->sign);
+        return REFUSE(work, "%s.sign: %d, expected 1 or -1", at, text->sign);
     }
     struct dig_map_entry entry = text->entry;
     if (!(entry.min < entry.max)) {
-        return dig_yaml_refuse(work->path, work->error, "%s.max: %g, expected more than min %g", at,
-                               entry.max, entry.min);
+        return REFUSE(work, "%s.max: %g, expected more than min %g", at, entry.max, entry.min);
     }
     if (!(entry.max_rate >= 0.0)) {
-        return dig_yaml_refuse(work->path, work->error, "%s.max_rate: %g, expected 0 (any) or more",
-                               at, entry.max_rate);
+        return REFUSE(work, "%s.max_rate: %g, expected 0 (any) or more", at, entry.max_rate);
     }
     const bool scale_given = fabs(entry.scale) > 0.0;
     entry.used             = true;
@@ -109,26 +102,22 @@ static enum dig_status check_map(const struct dig_config_map_work *const work,
                { "stuck_ms", text->stuck_ms != NULL ? *text->stuck_ms : 0.0, 0.0, 60e3 },
     };
     if (map->kind == DIG_MAP_CAN && work->dbc == NULL) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "kind: can, expected modbus for this input");
+        return REFUSE(work, "kind: can, expected modbus for this input");
     }
     if (text->function != 0 && text->function != 3 && text->function != 4) {
-        return dig_yaml_refuse(
-            work->path, work->error,
-            "function: %u, expected 4 (input registers) or 3 (holding registers)", text->function);
+        return REFUSE(work, "function: %u, expected 4 (input registers) or 3 (holding registers)",
+                      text->function);
     }
     const enum dig_status status = dig_yaml_check_ranges(work->path, "", 2, range, work->error);
     if (status != DIG_OK) {
         return status;
     }
     if (map->kind == DIG_MAP_CAN && map->groups > 0) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "blocks: given for can, expected with kind: modbus only");
+        return REFUSE(work, "blocks: given for can, expected with kind: modbus only");
     }
     if (map->kind != DIG_MAP_CAN && (text->messages_count > 0 || map->j1939)) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s: given for modbus, expected with kind: can only",
-                               map->j1939 ? "j1939" : "messages");
+        return REFUSE(work, "%s: given for modbus, expected with kind: can only",
+                      map->j1939 ? "j1939" : "messages");
     }
     return DIG_OK;
 }
@@ -170,16 +159,13 @@ static enum dig_status read_blocks(const struct dig_config_map_work *const work,
     }
     for (unsigned i = 0; status == DIG_OK && i < text->signals_count; i++) {
         if (!dig_register_assign(map, &map->entry[dig_signal_find(text->signals[i].name)])) {
-            status =
-                dig_yaml_refuse(work->path, work->error,
-                                "signals[%u].register: %u, expected it within one of the blocks", i,
-                                *text->signals[i].reg);
+            status = REFUSE(work, "signals[%u].register: %u, expected it within one of the blocks",
+                            i, *text->signals[i].reg);
         }
     }
     if (status == DIG_OK && map->has_alive && !dig_register_assign(map, &map->alive)) {
-        status = dig_yaml_refuse(work->path, work->error,
-                                 "alive.register: %u, expected it within one of the blocks",
-                                 map->alive.reg);
+        status = REFUSE(work, "alive.register: %u, expected it within one of the blocks",
+                        map->alive.reg);
     }
     return status;
 }
@@ -194,27 +180,25 @@ static enum dig_status check_signals(const struct dig_config_map_work *const wor
     for (int i = 0; i < DIG_SIGNALS; i++) {
         const enum dig_signal signal = (enum dig_signal)i;
         if (!entry[i].used && dig_signal_gives_moment(sensing, signal)) {
-            return dig_yaml_refuse(work->path, work->error, "signals: no entry %s, expected %s",
-                                   dig_signal_name(signal),
-                                   sensor ? "the pin's place, the bucket's angle and all that the "
-                                            "force sensor reads"
-                                          : "one for each angle and both pressures of the "
-                                            "bucket's cylinder");
+            return REFUSE(work, "signals: no entry %s, expected %s", dig_signal_name(signal),
+                          sensor ? "the pin's place, the bucket's angle and all that the "
+                                   "force sensor reads"
+                                 : "one for each angle and both pressures of the "
+                                   "bucket's cylinder");
         }
         if (entry[i].used && !dig_signal_is_optional(signal) &&
             !dig_signal_is_needed(sensing, signal)) {
-            return dig_yaml_refuse(work->path, work->error,
-                                   "signals: entry %s, expected signals of cylinders or of a force "
-                                   "sensor, not of both",
-                                   dig_signal_name(signal));
+            return REFUSE(work,
+                          "signals: entry %s, expected signals of cylinders or of a force "
+                          "sensor, not of both",
+                          dig_signal_name(signal));
         }
     }
     for (int i = DIG_SIGNAL_BOOM_HEAD_Pa; i < DIG_SIGNALS_NEEDED; i += 2) {
         if (entry[i].used != entry[i + 1].used) {
-            return dig_yaml_refuse(
-                work->path, work->error,
-                "signals: no entry %s, expected both pressures of a cylinder or none",
-                dig_signal_name((enum dig_signal)(entry[i].used ? i + 1 : i)));
+            return REFUSE(work,
+                          "signals: no entry %s, expected both pressures of a cylinder or none",
+                          dig_signal_name((enum dig_signal)(entry[i].used ? i + 1 : i)));
         }
     }
     return DIG_OK;

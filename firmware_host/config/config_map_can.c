@@ -65,17 +65,15 @@ enum dig_status dig_config_map_check_unit(const struct dig_config_map_work *cons
             continue;
         }
         if (unit->kind != kind_of(signal)) {
-            return dig_yaml_refuse(
-                work->path, work->error, "%s.signal: %s is in %s, expected a signal that can be %s",
-                at, entry->can.name, unit->name, dig_signal_name((enum dig_signal)signal));
+            return REFUSE(work, "%s.signal: %s is in %s, expected a signal that can be %s", at,
+                          entry->can.name, unit->name, dig_signal_name((enum dig_signal)signal));
         }
         if (!scale_given) {
             entry->scale = unit->scale;
         }
         if (!(fabs(entry->scale - unit->scale) <= most_calibration * unit->scale)) {
-            return dig_yaml_refuse(work->path, work->error,
-                                   "%s.scale: %g, expected %g (the DBC gives %s in %s)", at,
-                                   entry->scale, unit->scale, entry->can.name, unit->name);
+            return REFUSE(work, "%s.scale: %g, expected %g (the DBC gives %s in %s)", at,
+                          entry->scale, unit->scale, entry->can.name, unit->name);
         }
     }
     return DIG_OK;
@@ -92,8 +90,7 @@ static enum dig_status group_of(const struct dig_config_map_work *const work, co
         return DIG_OK;
     }
     if (map->groups == DIG_GROUPS_MAX) {
-        return dig_yaml_refuse(work->path, work->error, "%s.message: expected at most %d messages",
-                               at, DIG_GROUPS_MAX);
+        return REFUSE(work, "%s.message: expected at most %d messages", at, DIG_GROUPS_MAX);
     }
     struct dig_map_group *const added = &map->group[map->groups];
     *added                            = (struct dig_map_group){ .id       = message->id,
@@ -111,27 +108,22 @@ enum dig_status dig_config_map_find_can(const struct dig_config_map_work *const 
                                         struct dig_map_entry *const entry)
 {
     if (message_name == NULL || signal_name == NULL) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s.%s: missing, expected a name of the DBC", at,
-                               message_name == NULL ? "message" : "signal");
+        return REFUSE(work, "%s.%s: missing, expected a name of the DBC", at,
+                      message_name == NULL ? "message" : "signal");
     }
     const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, message_name);
     if (message == NULL) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s.message: \"%s\", expected a message of the DBC", at,
-                               message_name);
+        return REFUSE(work, "%s.message: \"%s\", expected a message of the DBC", at, message_name);
     }
     const struct dig_dbc_signal *const signal =
         dig_dbc_find_signal(work->dbc, message, signal_name);
     if (signal == NULL) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s.signal: \"%s\", expected a signal of %s", at, signal_name,
-                               message_name);
+        return REFUSE(work, "%s.signal: \"%s\", expected a signal of %s", at, signal_name,
+                      message_name);
     }
     if (signal->multiplexed || signal->is_float) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s.signal: \"%s\" is %s, expected a plain integer signal", at,
-                               signal_name, signal->multiplexed ? "multiplexed" : "floating-point");
+        return REFUSE(work, "%s.signal: \"%s\" is %s, expected a plain integer signal", at,
+                      signal_name, signal->multiplexed ? "multiplexed" : "floating-point");
     }
     entry->can = *signal;
     return group_of(work, at, message, &entry->group);
@@ -149,9 +141,8 @@ static enum dig_status find_frame_signal(const struct dig_config_map_work *const
         return status;
     }
     if (entry.can.bits > 32) {
-        return dig_yaml_refuse(work->path, work->error,
-                               "%s.%s: \"%s\" has %u bits, expected at most 32", at, key_name,
-                               signal, entry.can.bits);
+        return REFUSE(work, "%s.%s: \"%s\" has %u bits, expected at most 32", at, key_name, signal,
+                      entry.can.bits);
     }
     *found = entry.can;
     return DIG_OK;
@@ -172,9 +163,9 @@ static enum dig_status read_checksum(const struct dig_config_map_work *const wor
     const unsigned from = group->checksum_at.start_bit % 8;
     if (tsc1 ? bits > 4 || text->counter == NULL
              : bits != 8 || from != (group->checksum_at.intel ? 0U : 7U)) {
-        return dig_yaml_refuse(work->path, work->error, "%s.checksum: expected %s", at,
-                               tsc1 ? "up to 4 bits, and a counter beside it"
-                                    : "a signal of one whole byte");
+        return REFUSE(work, "%s.checksum: expected %s", at,
+                      tsc1 ? "up to 4 bits, and a counter beside it"
+                           : "a signal of one whole byte");
     }
     group->checksum = text->checksum->kind;
     return DIG_OK;
@@ -190,10 +181,9 @@ enum dig_status dig_config_map_read_message(const struct dig_config_map_work *co
     const int                           known =
         message != NULL ? dig_signal_map_group(work->map, message->id, message->extended) : -1;
     if (known < 0) {
-        return dig_yaml_refuse(
-            work->path, work->error,
-            "%s.message: \"%s\", expected a message that carries one of the signals", at,
-            text->message);
+        return REFUSE(work,
+                      "%s.message: \"%s\", expected a message that carries one of the signals", at,
+                      text->message);
     }
     struct dig_map_group *const group   = &work->map->group[known];
     const struct dig_yaml_range range[] = {

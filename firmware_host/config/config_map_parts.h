@@ -15,6 +15,8 @@ struct dig_config_map_work {
     struct dig_error      *error;
 };
 
+#define REFUSE(work, ...) dig_yaml_refuse((work)->path, (work)->error, __VA_ARGS__)
+
 /// Finds message and signal of an entry in the DBC, and adds its group when it is new. at: the
 /// entry's key, "signals[3]". DIG_EINVAL: one is missing, or the signal is not a plain integer.
 DIG_MUST_CHECK enum dig_status dig_config_map_find_can(const struct dig_config_map_work *work,
