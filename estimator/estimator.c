@@ -45,9 +45,8 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
                                    const struct dig_estimator_settings *const settings)
 {
     assert(estimator != NULL && machine != NULL && set != NULL && settings != NULL);
-    const char *reason = NULL;
-    if (dig_estimator_settings_check(settings, &reason) != DIG_OK ||
-        dig_machine_check(machine, NULL) != DIG_OK || !set_is_sound(set)) {
+    if (!dig_estimator_settings_ok(settings) || dig_machine_check(machine, NULL) != DIG_OK ||
+        !set_is_sound(set)) {
         return DIG_EINVAL;
     }
     const enum dig_status closes = dig_linkage_check(machine);

@@ -3,11 +3,13 @@
 #ifndef DIG_ESTIMATOR_TRACK_SETTINGS_H
 #define DIG_ESTIMATOR_TRACK_SETTINGS_H
 
-#include "core/status.h"
+#include <stdbool.h>
+
+#define DIG_TICK_MOST_s 0.1
 
 struct dig_estimator_settings {
     // fixed at start
-    double tick_s;         // nominal time between samples
+    double tick_s;         // nominal time between samples, at most DIG_TICK_MOST_s
     double contact_sigmas; // My above this many sigma, sustained, is contact (phase.h)
     double contact_hold_s; // how long it must last
     double exit_hold_s;    // how long it must be gone
@@ -17,7 +19,8 @@ struct dig_estimator_settings {
 };
 
 struct dig_estimator_settings dig_estimator_settings_default(void);
-DIG_MUST_CHECK enum dig_status
-dig_estimator_settings_check(const struct dig_estimator_settings *settings, const char **reason);
+
+/// False where a number is none or out of its range.
+bool dig_estimator_settings_ok(const struct dig_estimator_settings *settings);
 
 #endif // DIG_ESTIMATOR_TRACK_SETTINGS_H

@@ -241,7 +241,10 @@ static enum dig_status take_input(const struct work *const work)
     if (!is_given(work, "estimator.sample_s")) {
         config->estimator.tick_s = sample_s;
     }
-    return status;
+    return status == DIG_OK && config->estimator.tick_s > DIG_TICK_MOST_s
+               ? REFUSE(work,
+                        "estimator.sample_s: missing, expected with input.modbus.poll_Hz below 10")
+               : status;
 }
 
 static enum dig_status take(const struct work *const work)
@@ -258,12 +261,7 @@ static enum dig_status take(const struct work *const work)
     }
     enum dig_status status = take_numbers(work);
     status                 = status == DIG_OK ? take_texts(work) : status;
-    status                 = status == DIG_OK ? take_input(work) : status;
-    const char *reason     = NULL;
-    if (status == DIG_OK && dig_estimator_settings_check(&config->estimator, &reason) != DIG_OK) {
-        return REFUSE(work, "estimator: %s", reason);
-    }
-    return status;
+    return status == DIG_OK ? take_input(work) : status;
 }
 
 enum dig_status dig_config_read(const char *const path, struct dig_config *const config,
