@@ -8,30 +8,21 @@
 
 #define KEY_SIZE 64
 
-struct range {
-    const char *key;
-    double      value;
-    double      least; // inclusive
-    double      most;  // inclusive
-};
-
-// Smallest positive bound: zero is refused, and no length or density comes near it.
-#define ABOVE_ZERO 1e-12
-
-static enum dig_status check_ranges(const char *const list, const size_t at, const size_t n,
-                                    const struct range range[], struct dig_error *const error)
+enum dig_status dig_scene_check_ranges(const char *const list, const size_t at, const size_t n,
+                                       const struct dig_scene_range range[],
+                                       struct dig_error *const      error)
 {
     for (size_t i = 0; i < n; i++) {
-        if (!(range[i].value >= range[i].least && range[i].value <= range[i].most)) {
+        const struct dig_scene_range *const r = &range[i];
+        if (!(r->value >= r->least && r->value <= r->most && (!r->above || r->value > r->least))) {
             char key[KEY_SIZE];
             if (list == NULL) {
-                (void)snprintf(key, sizeof key, "%s", range[i].key);
+                (void)snprintf(key, sizeof key, "%s", r->key);
             } else {
-                (void)snprintf(key, sizeof key, "%s[%zu].%s", list, at, range[i].key);
+                (void)snprintf(key, sizeof key, "%s[%zu].%s", list, at, r->key);
             }
-            return dig_error_set(
-                error, DIG_EINVAL, "%s: %g, expected %s %g and <= %g", key, range[i].value,
-                range[i].least > 0.0 ? "> 0 and >=" : ">=", range[i].least, range[i].most);
+            return dig_error_set(error, DIG_EINVAL, "%s: %g, expected %s %g and <= %g", key,
+                                 r->value, r->above ? ">" : ">=", r->least, r->most);
         }
     }
     return DIG_OK;
@@ -72,11 +63,11 @@ static enum dig_status check_sizes(const struct dig_scene *const scene,
                                                         fmin(box->y_max_m - box->y_min_m, box->z_max_m - box->z_min_m));
     double                           sum         = 0.0;
     for (size_t i = 0; i < bed->sizes; i++) {
-        const struct range range[] = {
-            { "diameter_m", bed->size[i].diameter_m, ABOVE_ZERO, 0.5 * narrowest_m },
-            { "mass_fraction", bed->size[i].mass_fraction, ABOVE_ZERO, 1.0 },
+        const struct dig_scene_range range[] = {
+            { "diameter_m", bed->size[i].diameter_m, 0.0, 0.5 * narrowest_m, true },
+            { "mass_fraction", bed->size[i].mass_fraction, 0.0, 1.0, true },
         };
-        const enum dig_status status = check_ranges("bed.sizes", i, 2, range, error);
+        const enum dig_status status = dig_scene_check_ranges("bed.sizes", i, 2, range, error);
         if (status != DIG_OK) {
             return status;
         }
@@ -94,13 +85,13 @@ static enum dig_status check_materials(const struct dig_bed_plan *const bed,
 {
     for (size_t i = 0; i < bed->materials; i++) {
         const struct dig_other_material *const m       = &bed->material[i];
-        const struct range                     range[] = {
-                                { "friction", m->friction, 0.0, 10.0 },
-                                { "rolling", m->rolling, 0.0, 10.0 },
-                                { "density_kgpm3", m->density_kgpm3, ABOVE_ZERO, 1e5 },
-                                { "restitution", m->restitution, ABOVE_ZERO, 1.0 },
+        const struct dig_scene_range           range[] = {
+                      { "friction", m->friction, 0.0, 10.0, false },
+                      { "rolling", m->rolling, 0.0, 10.0, false },
+                      { "density_kgpm3", m->density_kgpm3, 0.0, 1e5, true },
+                      { "restitution", m->restitution, 0.0, 1.0, true },
         };
-        const enum dig_status status = check_ranges("bed.materials", i, 4, range, error);
+        const enum dig_status status = dig_scene_check_ranges("bed.materials", i, 4, range, error);
         if (status != DIG_OK) {
             return status;
         }
@@ -122,12 +113,12 @@ static enum dig_status check_materials(const struct dig_bed_plan *const bed,
     }
     for (size_t i = 0; i < bed->pairs; i++) {
         const struct dig_material_pair *const p       = &bed->pair[i];
-        const struct range                    range[] = {
-                               { "friction", p->friction, 0.0, 10.0 },
-                               { "rolling", p->rolling, 0.0, 10.0 },
-                               { "restitution", p->restitution, ABOVE_ZERO, 1.0 },
+        const struct dig_scene_range          range[] = {
+                     { "friction", p->friction, 0.0, 10.0, false },
+                     { "rolling", p->rolling, 0.0, 10.0, false },
+                     { "restitution", p->restitution, 0.0, 1.0, true },
         };
-        const enum dig_status status = check_ranges("bed.pairs", i, 3, range, error);
+        const enum dig_status status = dig_scene_check_ranges("bed.pairs", i, 3, range, error);
         if (status != DIG_OK) {
             return status;
         }
@@ -305,21 +296,22 @@ static enum dig_status check_earlier(const struct dig_scene *const scene,
 enum dig_status dig_bed_plan_check(const struct dig_scene *const scene,
                                    struct dig_error *const       error)
 {
-    const struct range range[] = {
-        { "laws.cohesion_Jpm3", scene->laws.cohesion_Jpm3, 0.0, 1e9 },
-        { "laws.adhesion_Jpm3", scene->laws.adhesion_Jpm3, 0.0, 1e9 },
-        { "laws.bucket_smoothness", scene->laws.bucket_smoothness, 0.0, 1.0 },
-        { "bed.preload_Pa", scene->bed.preload_Pa, 0.0, 1e9 },
+    const struct dig_scene_range range[] = {
+        { "laws.cohesion_Jpm3", scene->laws.cohesion_Jpm3, 0.0, 1e9, false },
+        { "laws.adhesion_Jpm3", scene->laws.adhesion_Jpm3, 0.0, 1e9, false },
+        { "laws.bucket_smoothness", scene->laws.bucket_smoothness, 0.0, 1.0, false },
+        { "bed.preload_Pa", scene->bed.preload_Pa, 0.0, 1e9, false },
     };
-    enum dig_status status = check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);
-    status                 = status == DIG_OK ? check_counts(&scene->bed, error) : status;
-    status                 = status == DIG_OK ? check_sizes(scene, error) : status;
-    status                 = status == DIG_OK ? check_materials(&scene->bed, error) : status;
-    status                 = status == DIG_OK ? check_layers(&scene->bed, error) : status;
-    status                 = status == DIG_OK ? check_surface(scene, error) : status;
-    status                 = status == DIG_OK ? check_clump(&scene->bed.clump, error) : status;
-    status                 = status == DIG_OK ? check_obstacles(&scene->bed, error) : status;
-    status                 = status == DIG_OK ? check_period(scene, error) : status;
+    enum dig_status status =
+        dig_scene_check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);
+    status = status == DIG_OK ? check_counts(&scene->bed, error) : status;
+    status = status == DIG_OK ? check_sizes(scene, error) : status;
+    status = status == DIG_OK ? check_materials(&scene->bed, error) : status;
+    status = status == DIG_OK ? check_layers(&scene->bed, error) : status;
+    status = status == DIG_OK ? check_surface(scene, error) : status;
+    status = status == DIG_OK ? check_clump(&scene->bed.clump, error) : status;
+    status = status == DIG_OK ? check_obstacles(&scene->bed, error) : status;
+    status = status == DIG_OK ? check_period(scene, error) : status;
     return status == DIG_OK ? check_earlier(scene, error) : status;
 }
 

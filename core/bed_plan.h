@@ -6,6 +6,18 @@
 
 #include "core/scene.h"
 
+/// A number of the scene, and the range it must be in.
+struct dig_scene_range {
+    const char *key;
+    double      value, least, most;
+    bool        above; // the least itself is refused, too
+};
+
+/// Refuses the first that is not. list: the list whose entry `at` they are of; NULL: of none.
+DIG_MUST_CHECK enum dig_status dig_scene_check_ranges(const char *list, size_t at, size_t n,
+                                                      const struct dig_scene_range range[],
+                                                      struct dig_error            *error);
+
 /// Refuses laws and a bed that cannot be computed; *error names the key ("bed.sizes[1].diameter_m:
 /// -1, expected …"). The rest of the scene has been checked.
 DIG_MUST_CHECK enum dig_status dig_bed_plan_check(const struct dig_scene *scene,

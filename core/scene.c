@@ -10,25 +10,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-struct range {
-    const char *key;
-    double      value;
-    double      above; // exclusive
-    double      most;  // inclusive
-};
-
-static enum dig_status check_ranges(const size_t n, const struct range range[],
-                                    struct dig_error *const error)
-{
-    for (size_t i = 0; i < n; i++) {
-        if (!(range[i].value > range[i].above && range[i].value <= range[i].most)) {
-            return dig_error_set(error, DIG_EINVAL, "%s: %g, expected > %g and <= %g", range[i].key,
-                                 range[i].value, range[i].above, range[i].most);
-        }
-    }
-    return DIG_OK;
-}
-
 static enum dig_status check_box(const struct dig_box *const box, const double diameter_m,
                                  struct dig_error *const error)
 {
@@ -141,26 +122,28 @@ enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_
                              scene->name);
     }
 
-    const struct range range[] = {
-        { "bucket.width_m", scene->bucket.width_m, 0.0, 100.0 },
-        { "material.diameter_m", scene->material.diameter_m, 0.0, 10.0 },
-        { "material.young_Pa", scene->material.young_Pa, 0.0, 1e12 },
-        { "material.poisson", scene->material.poisson, -1.0, 0.5 },
-        { "material.restitution", scene->material.restitution, 0.0, 1.0 },
+    const struct dig_scene_range range[] = {
+        { "bucket.width_m", scene->bucket.width_m, 0.0, 100.0, true },
+        { "material.diameter_m", scene->material.diameter_m, 0.0, 10.0, true },
+        { "material.young_Pa", scene->material.young_Pa, 0.0, 1e12, true },
+        { "material.poisson", scene->material.poisson, -1.0, 0.5, true },
+        { "material.restitution", scene->material.restitution, 0.0, 1.0, true },
         { "material.characteristic_velocity_mps", scene->material.characteristic_velocity_mps, 0.0,
-          1e3 },
-        { "packing.solid_fraction", scene->packing.solid_fraction, 0.0, 0.4 },
-        { "packing.fill_factor", scene->packing.fill_factor, 0.0, 2.0 },
-        { "packing.fall_mps", scene->packing.fall_mps, -1e-300, 10.0 },
-        { "packing.settle_s", scene->packing.settle_s, 0.0, 60.0 },
-        { "packing.relax_s", scene->packing.relax_s, -1e-300, 60.0 },
+          1e3, true },
+        { "packing.solid_fraction", scene->packing.solid_fraction, 0.0, 0.4, true },
+        { "packing.fill_factor", scene->packing.fill_factor, 0.0, 2.0, true },
+        { "packing.fall_mps", scene->packing.fall_mps, 0.0, 10.0, false },
+        { "packing.settle_s", scene->packing.settle_s, 0.0, 60.0, true },
+        { "packing.relax_s", scene->packing.relax_s, 0.0, 60.0, false },
         { "material.young_at_kgpm3", scene->material.young_at_kgpm3,
-          scene->material.young_at_kgpm3 > 0.0 ? 99.0 : -1e-300, 20000.0 },
-        { "gravity_mps2", scene->gravity_mps2, 0.0, 100.0 },
-        { "time_step_s", scene->time_step_s, -1e-300, 1e-2 },
-        { "output_s", scene->output_s, 0.0, 0.02 },
+          scene->material.young_at_kgpm3 > 0.0 ? 99.0 : 0.0, 20000.0,
+          scene->material.young_at_kgpm3 > 0.0 },
+        { "gravity_mps2", scene->gravity_mps2, 0.0, 100.0, true },
+        { "time_step_s", scene->time_step_s, 0.0, 1e-2, false },
+        { "output_s", scene->output_s, 0.0, 0.02, true },
     };
-    enum dig_status status = check_ranges(sizeof range / sizeof range[0], range, error);
+    enum dig_status status =
+        dig_scene_check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);
     if (status == DIG_OK) {
         status = check_box(&scene->box, scene->material.diameter_m, error);
     }
