@@ -3,7 +3,7 @@
 #ifndef DIG_ESTIMATOR_ESTIMATOR_STATE_H
 #define DIG_ESTIMATOR_ESTIMATOR_STATE_H
 
-#include "estimator/estimator_tick.h"
+#include "estimator/estimator.h"
 #include "estimator/track/motion.h"
 #include "estimator/track/phase.h"
 #include "estimator/track/recorded_dig.h"

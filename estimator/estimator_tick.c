@@ -1,4 +1,6 @@
-#include "estimator/estimator_tick.h"
+// What the tick exchanges with the matching thread through the estimator.
+
+#include "estimator/estimator.h"
 
 #include "estimator/approach/approach_route.h"
 #include "estimator/estimator_state.h"

@@ -30,7 +30,7 @@ files/yaml             yaml yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
 files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json job_plan machine_yaml model_json
                        recording_csv scene_yaml
-estimator              estimator estimator_tick
+estimator              estimator
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
 estimator/track        inertia_error phase recorded_dig route settings track window | abort_detection ending estimate
                        motion

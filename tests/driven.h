@@ -6,7 +6,7 @@
 #define DIG_TESTS_DRIVEN_H
 
 #include "estimator/approach/live_recording.h"
-#include "estimator/estimator_tick.h"
+#include "estimator/estimator.h"
 #include "tests/made_table.h"
 
 static const double driven_lambda = 10.0; // machine over rig

@@ -2,7 +2,6 @@
 
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"
-#include "estimator/estimator_tick.h"
 #include "estimator/match/depth.h"
 #include "estimator/track/inertia_error.h"
 

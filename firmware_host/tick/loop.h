@@ -10,7 +10,7 @@
 #ifndef DIG_FIRMWARE_HOST_TICK_LOOP_H
 #define DIG_FIRMWARE_HOST_TICK_LOOP_H
 
-#include "estimator/estimator_tick.h"
+#include "estimator/estimator.h"
 #include "estimator/wrench/correction.h"
 #include "firmware_host/threads/handoff.h"
 #include "firmware_host/tick/assemble.h"
