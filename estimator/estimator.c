@@ -1,7 +1,6 @@
 #include "estimator/estimator.h"
 
 #include "core/linkage.h"
-#include "estimator/approach/observe_dig.h"
 #include "estimator/estimator_state.h"
 #include "estimator/track/ending.h"
 
@@ -54,11 +53,12 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
         return closes;
     }
 
-    // Two megabytes: cleared in place, not by way of the stack.
+    // Four megabytes: cleared in place, not by way of the stack.
     memset(estimator, 0, sizeof *estimator);
     estimator->machine   = machine;
     estimator->settings  = *settings;
-    estimator->recording = &estimator->own_recording;
+    estimator->recording = &estimator->own[0];
+    estimator->spare     = &estimator->own[1];
     estimator->rates     = (struct dig_rates_filter){ .window_s = DIG_SENSED_RATES_s };
     dig_estimator_set_table(estimator, set);
     return DIG_OK;
@@ -139,14 +139,11 @@ static bool path_is_over(const struct dig_estimator *const e)
            e->off_path_m > e->settings.path_limit_m;
 }
 
-// Hands the recording out and records on in the spare; observes the dig here where none is lent.
+// Hands the recording out and records on in the spare.
 static void finish_dig(struct dig_estimator *const e)
 {
     e->recording->dig_count = ++e->digs;
-    if (!e->lends) {
-        e->has_observation |=
-            dig_recorded_dig_observe(e->set, &e->settings, e->recording, &e->observation) == DIG_OK;
-    } else if (e->spare != NULL && e->finished == NULL) {
+    if (e->spare != NULL && e->finished == NULL) {
         e->finished  = e->recording;
         e->recording = e->spare;
         e->spare     = NULL;
@@ -229,16 +226,4 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
         .motion     = motion,
     };
     return DIG_OK;
-}
-
-bool dig_estimator_take_observation(struct dig_estimator *const   estimator,
-                                    struct dig_observation *const observation)
-{
-    assert(estimator != NULL && observation != NULL);
-    if (!estimator->has_observation) {
-        return false;
-    }
-    *observation               = estimator->observation;
-    estimator->has_observation = false;
-    return true;
 }

@@ -1,7 +1,7 @@
 // The estimator: samples in; soil wrench, phase, trajectory and finished digs out. Pure C: no I/O,
 // no clock, no allocation; the caller owns every struct. A sample walks
 //
-//   sample -> wrench -> phase -> track -> window of the dig -> observation
+//   sample -> wrench -> phase -> track -> recording of the dig
 //
 // Matching and forecasting stand in match/ and predict/.
 
@@ -10,7 +10,6 @@
 
 #include "core/curve.h"
 #include "core/machine.h"
-#include "core/observation.h"
 #include "core/sample.h"
 #include "core/status.h"
 #include "estimator/predict/forecast.h"
@@ -26,7 +25,7 @@ struct dig_corrected_machine; // estimator/wrench/correction.h
 struct dig_estimator;         // estimator/estimator_state.h: fixed size
 struct dig_recorded_dig;      // estimator/track/recorded_dig.h
 
-/// Size of the struct, about 2 MB: for allocating one.
+/// Size of the struct, about 4 MB: for allocating one.
 size_t dig_estimator_size(void);
 
 /// Initialises; lambda is the machine's tooth length over the table's. The machine and the set must
@@ -39,16 +38,10 @@ DIG_MUST_CHECK enum dig_status dig_estimator_init(struct dig_estimator          
                                                   const struct dig_estimator_settings *settings);
 
 /// One tick. DIG_ESTALE: a sample without a moment, or not younger than the last. DIG_EINVAL: a
-/// number that is not finite. State and *estimate are unchanged then. Constant time, but for the
-/// tick that ends a dig while no memory was lent: it observes the dig, one to two milliseconds.
+/// number that is not finite. State and *estimate are unchanged then. Constant time.
 DIG_MUST_CHECK enum dig_status dig_estimator_step(struct dig_estimator    *estimator,
                                                   const struct dig_sample *sample,
                                                   struct dig_estimate     *estimate);
-
-/// True once after every finished dig along a trajectory of the table, while no memory was lent:
-/// copies its observation out.
-bool dig_estimator_take_observation(struct dig_estimator   *estimator,
-                                    struct dig_observation *observation);
 
 // What the real-time tick exchanges with the matching thread: recordings of finished digs out, in
 // memory that thread lends; tables, machines and forecasts in; and the predictions made of a
@@ -73,16 +66,16 @@ void dig_estimator_set_table(struct dig_estimator *estimator, const struct dig_c
 void dig_estimator_set_machine(struct dig_estimator               *estimator,
                                const struct dig_corrected_machine *corrected);
 
-/// Lends memory (zeroed, or taken before) for the recording of the next dig. From the first call
-/// on, finished digs are handed out as recordings. A dig that ends while no memory is lent, or
-/// before the last recording was taken, is lost and counted. The memory must outlive the estimator
-/// or be taken back.
+/// Lends memory (zeroed, or taken before) for the recording of the next dig. An estimator has some
+/// for two at first. A dig that ends while there is none for the next, or before the last recording
+/// was taken, is lost and counted. The memory must outlive the estimator or be taken back.
 void dig_estimator_lend(struct dig_estimator *estimator, struct dig_recorded_dig *spare);
 
 /// True when memory can be lent.
 bool dig_estimator_wants_spare(const struct dig_estimator *estimator);
 
 /// The recording of the finished dig, the caller's until it is lent again; NULL: none.
+/// dig_recorded_dig_observe() (estimator/approach/observe_dig.h) tells which it was.
 struct dig_recorded_dig *dig_estimator_take_recording(struct dig_estimator *estimator);
 
 /// Digs lost since init.

@@ -45,15 +45,12 @@ struct dig_estimator {
 
     // of finished digs
     uint32_t                   digs;
-    bool                       has_observation;
-    struct dig_observation     observation;
-    bool                       lends;    // memory was lent once: digs are handed out
     struct dig_recorded_dig   *spare;    // for the next dig; NULL: none
     struct dig_recorded_dig   *finished; // to be taken; NULL: none
     uint32_t                   lost;
     const struct dig_forecast *forecast; // NULL: none
 
-    struct dig_recorded_dig own_recording; // recording points to it unless memory was lent
+    struct dig_recorded_dig own[2]; // the first to record in
 };
 
 /// Drops the dig in progress and waits for contact.

@@ -76,7 +76,6 @@ void dig_estimator_set_machine(struct dig_estimator *const               estimat
 void dig_estimator_lend(struct dig_estimator *const estimator, struct dig_recorded_dig *const spare)
 {
     assert(estimator != NULL && spare != NULL && estimator->spare == NULL);
-    estimator->lends = true;
     estimator->spare = spare;
 }
 

@@ -96,7 +96,7 @@ static void connect_threads(struct dig_daemon *const d)
                                           &d->spares,      &d->records,     &d->digs,
                                           &d->predictions, &d->tick_status, &d->estimates };
     dig_loop_init(&d->loop, &settings, &ports, d->estimator);
-    for (size_t i = 0; i < DIGS; i++) {
+    for (size_t i = 0; i < DIGS_MORE; i++) {
         (void)dig_ring_push(&d->spares, &d->dig_memory[i]);
     }
 
@@ -141,7 +141,7 @@ static bool allocate(struct dig_daemon *const d)
 {
     bool all     = true;
     d->estimator = calloc(1, dig_estimator_size());
-    for (size_t i = 0; i < DIGS; i++) {
+    for (size_t i = 0; i < DIGS_MORE; i++) {
         d->dig_memory[i] = calloc(1, dig_recorded_dig_size());
         all              = all && d->dig_memory[i] != NULL;
     }
@@ -194,7 +194,7 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
         dig_input_destroy(&daemon->input);
         dig_matcher_finish(&daemon->fit.matcher);
         free(daemon->estimator);
-        for (size_t i = 0; i < DIGS; i++) {
+        for (size_t i = 0; i < DIGS_MORE; i++) {
             free(daemon->dig_memory[i]);
         }
         dig_loaded_finish(&daemon->loaded);

@@ -12,7 +12,8 @@
 
 #define READINGS  4096
 #define RECORDS   4096
-#define DIGS      4 // memory for finished digs: one in the tick's hands, the others on the way
+#define DIGS      4 // recordings of digs on the way, at most
+#define DIGS_MORE 3 // memory for them, beside the estimator's for two, of which the tick has one
 #define RESULTS   16
 #define ESTIMATES 4096 // seconds of them, for a matcher that is at work
 
@@ -34,7 +35,7 @@ struct dig_daemon {
     char                     path[PATH_MAX];
     struct dig_loaded        loaded;
     struct dig_estimator    *estimator;
-    struct dig_recorded_dig *dig_memory[DIGS];
+    struct dig_recorded_dig *dig_memory[DIGS_MORE];
     struct dig_input         input;
     struct dig_loop          loop;
     struct dig_fit           fit;

@@ -39,7 +39,6 @@ void driven_destroy(struct driven *const b)
 {
     made_table_destroy(b->set);
     free(b->estimator);
-    free(b->spare);
     free(b->live);
     free(b);
 }
@@ -54,17 +53,13 @@ static unsigned long allocations(const struct driven *const b)
     return b->allocations != NULL ? *b->allocations : 0;
 }
 
-// The dig that ended in this tick: observed in the tick, or handed out raw and observed beside it.
+// Observes the dig that ended in this tick.
 static bool take(struct driven *const b)
 {
-    if (b->spare == NULL) {
-        return dig_estimator_take_observation(b->estimator, &b->observation);
-    }
     struct dig_recorded_dig *const raw = dig_estimator_take_recording(b->estimator);
     if (raw == NULL) {
         return false;
     }
-    assert_false(dig_estimator_take_observation(b->estimator, &b->observation));
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     const bool any = dig_recorded_dig_observe(b->set, &settings, raw, &b->observation) == DIG_OK;
     b->gave_up     = !any && dig_recorded_dig_was_aborted(b->set, &settings, raw, &b->gave_up_of,
@@ -100,10 +95,9 @@ void driven_tick(struct driven *const b, const struct dig_pose pose, const doubl
 
     const unsigned long   before = allocations(b);
     const enum dig_status status = dig_estimator_step(b->estimator, &sample, &b->estimate);
-    const bool            taken  = take(b);
-    assert_int_equal(status, dropped ? DIG_ESTALE : DIG_OK);
     b->steps_with_allocation += allocations(b) != before ? 1 : 0;
-    b->observations += taken ? 1 : 0;
+    assert_int_equal(status, dropped ? DIG_ESTALE : DIG_OK);
+    b->observations += take(b) ? 1 : 0;
     if (b->live != NULL && !dropped) {
         dig_live_recording_add(b->live, b->set, driven_lambda, &b->estimate);
         assert_true(b->live->digging ==

@@ -33,7 +33,6 @@ struct driven {
     struct dig_machine         machine;
     struct dig_curve_set      *set;
     struct dig_estimator      *estimator;
-    struct dig_recorded_dig   *spare; // NULL: digs are observed in the tick
     bool                       keeps; // does not give a finished dig back
     double                     time_s;
     const unsigned long       *allocations; // of this thread; NULL: nobody counts

@@ -2,6 +2,7 @@
 
 #include "core/outline.h"
 #include "core/units.h"
+#include "estimator/approach/observe_dig.h"
 #include "tests/model_front.h"
 
 #include <math.h>
@@ -186,4 +187,17 @@ void made_disturb(struct dig_observation *const observation, const double relati
         }
         observation->moment_Nm[k] *= 1.0 + relative_sd * sum / sqrt((double)width);
     }
+}
+
+bool made_observed(struct dig_estimator *const estimator, const struct dig_curve_set *const set,
+                   struct dig_observation *const seen)
+{
+    const struct dig_estimator_settings settings  = dig_estimator_settings_default();
+    struct dig_recorded_dig *const      recording = dig_estimator_take_recording(estimator);
+    if (recording == NULL) {
+        return false;
+    }
+    const bool any = dig_recorded_dig_observe(set, &settings, recording, seen) == DIG_OK;
+    dig_estimator_lend(estimator, recording);
+    return any;
 }

@@ -5,6 +5,7 @@
 #define DIG_TESTS_MADE_TABLE_H
 
 #include "core/curve.h"
+#include "core/observation.h"
 #include "estimator/estimator.h"
 
 enum made_trajectory { MADE_SIMPLE_A, MADE_SIMPLE_B, MADE_ACTUAL, MADE_TRAJECTORIES };
@@ -32,6 +33,10 @@ void                  made_table_destroy(struct dig_curve_set *set);
 /// What would be observed of a gravel without any error.
 struct dig_observation made_observation(const struct dig_gravel *gravel, enum made_trajectory which,
                                         double family);
+
+/// Observes the dig that ended in the estimator's last step; false: none did, or none of the set's.
+bool made_observed(struct dig_estimator *estimator, const struct dig_curve_set *set,
+                   struct dig_observation *seen);
 
 /// Adds a random error of relative_sd of the moment, correlated over a quarter of a bucket length.
 void made_disturb(struct dig_observation *observation, double relative_sd, uint64_t *seed);

@@ -4,7 +4,7 @@
 #define DIG_CLOSED_LOOP_ACCURACY_COVERAGE_H
 
 #include "core/curve.h"
-#include "estimator/estimator.h"
+#include "core/observation.h"
 
 /// Standard deviations to either side of 90 % of normal errors.
 #define DIG_COVERAGE_SIGMAS 1.645

@@ -4,8 +4,8 @@
 #include "closed_loop/recordings/machine_dig.h"
 #include "closed_loop/recordings/path_depth.h"
 #include "core/entry_set.h"
+#include "core/observation.h"
 #include "estimator/approach/approach_slots.h"
-#include "estimator/estimator.h"
 #include "estimator/track/window.h"
 #include "estimator/wrench/wrench.h"
 

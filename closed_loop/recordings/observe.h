@@ -6,8 +6,8 @@
 
 #include "core/curve.h"
 #include "core/error.h"
+#include "core/observation.h"
 #include "core/recording.h"
-#include "estimator/estimator.h"
 
 #include <stdbool.h>
 

@@ -2,6 +2,8 @@
 
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"
+#include "estimator/approach/observe_dig.h"
+#include "estimator/estimator.h"
 #include "estimator/match/depth.h"
 #include "estimator/track/inertia_error.h"
 
@@ -20,19 +22,27 @@ static enum dig_status append(struct dig_observed_digs *const     digs,
     return DIG_OK;
 }
 
-// Drives the estimator through the recording and collects what it hands out.
-static enum dig_status drive(struct dig_estimator *const               estimator,
-                             const struct dig_machine_recording *const recording,
-                             struct dig_observed_digs *const           digs)
+// Drives the estimator through the recording and observes what it hands out.
+static enum dig_status drive(struct dig_estimator *const                estimator,
+                             const struct dig_curve_set *const          set,
+                             const struct dig_estimator_settings *const settings,
+                             const struct dig_machine_recording *const  recording,
+                             struct dig_observed_digs *const            digs)
 {
     struct dig_estimate    estimate = { .dig_count = 0 };
     struct dig_observation observation;
     enum dig_status        status = DIG_OK;
     for (size_t i = 0; i < recording->rows && status == DIG_OK; i++) {
         // A sample it cannot use is passed over, as in the daemon's tick.
-        if (dig_estimator_step(estimator, &recording->row[i], &estimate) == DIG_OK &&
-            dig_estimator_take_observation(estimator, &observation)) {
-            status = append(digs, &observation);
+        if (dig_estimator_step(estimator, &recording->row[i], &estimate) != DIG_OK) {
+            continue;
+        }
+        struct dig_recorded_dig *const dug = dig_estimator_take_recording(estimator);
+        if (dug != NULL) {
+            status = dig_recorded_dig_observe(set, settings, dug, &observation) == DIG_OK
+                         ? append(digs, &observation)
+                         : DIG_OK;
+            dig_estimator_lend(estimator, dug);
         }
     }
     digs->seen = estimate.dig_count;
@@ -88,7 +98,7 @@ static enum dig_status observe(const struct dig_machine *const           machine
     if (corrected != NULL) {
         dig_estimator_set_machine(estimator, corrected);
     }
-    status = drive(estimator, recording, digs);
+    status = drive(estimator, set, &settings, recording, digs);
     if (status == DIG_OK) {
         status = tell_depths(machine, set, settings.path_limit_m, digs);
     }

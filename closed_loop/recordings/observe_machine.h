@@ -7,8 +7,8 @@
 #include "core/curve.h"
 #include "core/error.h"
 #include "core/machine.h"
+#include "core/observation.h"
 #include "core/recording.h"
-#include "estimator/estimator.h"
 #include "estimator/wrench/correction.h"
 
 #include <stddef.h>

@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
 // Between two samples the bucket moves less than this share of the route.
 #define LOOK 0.10
@@ -69,21 +70,11 @@ void dig_window_close(struct dig_window *const window)
     window->before = 0;
 }
 
-// Shell's sort with Ciura's gaps: in place, and qsort() allocates.
-static void sort_by_time(const size_t count, struct dig_window_sample sample[])
+static int by_time(const void *const left, const void *const right)
 {
-    static const size_t gaps[] = { 8929, 3937, 1750, 701, 301, 132, 57, 23, 10, 4, 1 };
-    for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
-        const size_t gap = gaps[g];
-        for (size_t i = gap; i < count; i++) {
-            const struct dig_window_sample moved = sample[i];
-            size_t                         to    = i;
-            for (; to >= gap && sample[to - gap].time_s > moved.time_s; to -= gap) {
-                sample[to] = sample[to - gap];
-            }
-            sample[to] = moved;
-        }
-    }
+    const double a = ((const struct dig_window_sample *)left)->time_s;
+    const double b = ((const struct dig_window_sample *)right)->time_s;
+    return (a > b) - (a < b);
 }
 
 // A range of samples.
@@ -275,7 +266,7 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     assert(window != NULL && route != NULL && track != NULL && observation != NULL);
 
     if (window->stride > 1) {
-        sort_by_time(window->count, window->sample);
+        qsort(window->sample, window->count, sizeof window->sample[0], by_time);
     }
     const struct range range = follow(window, route, track, limit_m);
     if (range.end < range.first + 3 || has_hole(window, range, half_s)) {

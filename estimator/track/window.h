@@ -64,6 +64,7 @@ double dig_window_hole_s(double half_s);
 ///
 /// DIG_ENOMATCH: fewer than two points of the grid were reached, or a gap is longer than half_s of
 /// rig time, which is not interpolated. Uses the window's arrays; O(samples * corners).
+/// Sorts a long dig, which may allocate: not in the tick.
 DIG_MUST_CHECK enum dig_status dig_window_observe(struct dig_window      *window,
                                                   const struct dig_route *route,
                                                   const struct dig_track *track, double limit_m,

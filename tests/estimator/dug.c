@@ -219,9 +219,6 @@ void dug_dig(const struct dug_soil *const soil, const struct dug_way *const way,
 {
     static struct digging d;
     d = (struct digging){ .driven = driven_create(true), .soil = soil, .way = way, .seed = seed };
-    d.driven->spare = calloc(1, dig_recorded_dig_size());
-    assert_non_null(d.driven->spare);
-    dig_estimator_lend(d.driven->estimator, d.driven->spare);
     struct dig_machine *const machine = &d.driven->machine;
     machine->pressure_step_Pa *= way->loud;
     machine->angle_step_rad *= way->loud;

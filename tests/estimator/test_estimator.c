@@ -165,7 +165,7 @@ TEST(whatever_comes_in_only_numbers_go_out)
         assert_true(isfinite(e.wrench.Fx_N) && isfinite(e.wrench.sigma_Fx_N));
         assert_true(isfinite(e.pin_X_m) && isfinite(e.phi_rad));
         assert_true(e.trajectory < 0 || (e.progress >= 0.0 && e.progress <= 1.0));
-        if (dig_estimator_take_observation(b->estimator, &o)) {
+        if (made_observed(b->estimator, b->set, &o)) {
             for (int k = 0; k < DIG_CURVE_POINTS; k++) {
                 assert_true(isfinite(o.moment_Nm[k]) && o.sigma_Nm[k] >= 0.0);
             }

@@ -1,6 +1,5 @@
 // Tests for estimator/estimator.c: whole digs, from pressures to what is told of them.
 
-#include "tests/count_allocations.h"
 #include "tests/driven.h"
 #include "tests/testlib.h"
 
@@ -182,35 +181,17 @@ TEST(a_dig_longer_than_the_window_is_still_observed)
     driven_destroy(b);
 }
 
-// Handed out raw and observed beside the tick, every dig is what it was within.
-TEST(a_dig_handed_out_raw_is_observed_the_same)
+// Who took the last dig keeps it: the next goes into no memory, and is counted.
+TEST(a_dig_without_memory_for_the_next_is_lost_and_counted)
 {
-    const struct drive drives[] = {
-        { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .sensors = true, .seed = 2 },
-        { .which = MADE_ACTUAL, .stretch = 1, .until = 1, .sensors = true, .seed = 3 },
-        { .which = MADE_SIMPLE_A, .stretch = 1, .until = 0.7, .sensors = true, .seed = 4 },
-    };
-    struct driven *const inside = driven_create(true), *const beside = driven_create(true);
-    beside->allocations = &allocations;
-    beside->spare       = calloc(1, dig_recorded_dig_size());
-    assert_non_null(beside->spare);
-    dig_estimator_lend(beside->estimator, beside->spare);
-    for (size_t i = 0; i < sizeof drives / sizeof drives[0]; i++) {
-        driven_dig(inside, drives[i]);
-        driven_dig(beside, drives[i]);
-        assert_int_equal(beside->observations, i + 1);
-        assert_memory_equal(&inside->observation, &beside->observation, sizeof inside->observation);
-    }
-    assert_int_equal(dig_estimator_lost_digs(beside->estimator), 0);
-    assert_int_equal(beside->steps_with_allocation, 0);
-
-    // The one who took the last dig keeps it: the next goes into no memory, and is counted.
-    beside->keeps = true;
-    driven_dig(beside, drives[0]);
-    driven_dig(beside, drives[0]);
-    assert_int_equal(beside->observations, 4);
-    assert_int_equal(dig_estimator_lost_digs(beside->estimator), 1);
-    driven_destroy(inside);
-    // The last raw dig taken is one of the estimator's own or the spare: both are freed.
-    driven_destroy(beside);
+    const struct drive   drive = { .which = MADE_SIMPLE_A, .stretch = 1, .until = 1, .seed = 2 };
+    struct driven *const b     = driven_create(true);
+    driven_dig(b, drive);
+    assert_int_equal(dig_estimator_lost_digs(b->estimator), 0);
+    b->keeps = true;
+    driven_dig(b, drive);
+    driven_dig(b, drive);
+    assert_int_equal(b->observations, 2);
+    assert_int_equal(dig_estimator_lost_digs(b->estimator), 1);
+    driven_destroy(b);
 }

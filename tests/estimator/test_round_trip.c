@@ -252,7 +252,7 @@ TEST(a_whole_run_gives_the_recorded_curves_within_their_sigma)
             struct dig_estimate    estimate;
             struct dig_observation o;
             assert_int_equal(dig_estimator_step(estimator, &sample, &estimate), DIG_OK);
-            if (!dig_estimator_take_observation(estimator, &o)) {
+            if (!made_observed(estimator, set, &o)) {
                 continue;
             }
             assert_true(digs < DIGS);

@@ -272,7 +272,7 @@ TEST(a_whole_run_gives_both_digs)
         assert_int_equal(dig_estimator_step(estimator, &sample, &estimate), DIG_OK);
         truth_Nm += run.track.row[i].soil.M_Nm;
         found_Nm += estimate.wrench.My_Nm;
-        if (dig_estimator_take_observation(estimator, &o)) {
+        if (made_observed(estimator, set, &o)) {
             assert_true(digs < DIGS);
             assert_int_equal(o.trajectory, digs == 0 ? MADE_SIMPLE_A : MADE_ACTUAL);
             // Cut corners are all that is off the path.
