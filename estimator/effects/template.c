@@ -88,15 +88,6 @@ static double strength(const struct dig_cell *const cell, const struct dig_grave
     return log(rms(cell, DIG_CHANNEL_MY_Nm) / gravel->value[DIG_AXIS_DENSITY_kgpm3]);
 }
 
-static bool is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
-{
-    bool same = true;
-    for (int i = 0; i < DIG_AXES; i++) {
-        same = same && fabs(a->value[i] - b->value[i]) <= 1e-9 * fabs(a->value[i]);
-    }
-    return same;
-}
-
 // Inserts a knot in order of magnitude.
 static void insert_knot(struct base *const base, const double magnitude,
                         const struct dig_curve *const curve, const int packings)
@@ -119,7 +110,7 @@ static struct base *base_of(struct base base[], size_t *const bases,
                             const struct dig_gravel *const gravel, const enum dig_effect_id effect)
 {
     for (size_t b = 0; b < *bases; b++) {
-        if (is_same(&base[b].gravel, gravel)) {
+        if (dig_gravel_is_same(&base[b].gravel, gravel)) {
             return &base[b];
         }
     }

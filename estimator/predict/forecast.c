@@ -1,7 +1,7 @@
 #include "estimator/predict/forecast.h"
 
-#include "estimator/approach/approach_response.h"
 #include "estimator/approach/approached.h"
+#include "estimator/approach/laid.h"
 #include "estimator/match/match.h"
 #include "estimator/predict/peak_energy.h"
 #include "estimator/predict/predict.h"
@@ -56,33 +56,23 @@ void dig_forecast_as_dug(const struct dig_curve_set *const set, const double lam
     expect(dug, lambda, match, 0, expected);
 }
 
-static double path_m(const struct dig_curve_set *const set, const struct dig_trajectory *const t)
-{
-    return dig_trajectory_path_m(t, set->tooth_m, dig_trajectory_duration_s(t));
-}
-
-// Read at the places of points further apart, or nearer, that end together.
-static void stretch(const double own_m, const double plain_m, float curve[const DIG_CURVE_POINTS])
+static void read_at(const double place[const DIG_CURVE_POINTS], float curve[const DIG_CURVE_POINTS])
 {
     float out[DIG_CURVE_POINTS];
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double before_m = plain_m * (1.0 - (double)k / (DIG_CURVE_POINTS - 1));
-        const double place    = fmax(1.0 - before_m / own_m, 0.0) * (DIG_CURVE_POINTS - 1);
-        out[k]                = (float)dig_curve_at(curve, place);
+        out[k] = (float)dig_curve_at(curve, place[k]);
     }
     memcpy(curve, out, sizeof out);
 }
 
 void dig_forecast_along_plain(const struct dig_curve_set *const set, const size_t trajectory,
-                              const struct dig_approach *const approach,
-                              struct dig_expected *const       expected)
+                              const double depth, struct dig_expected *const expected)
 {
-    assert(set != NULL && approach != NULL && expected != NULL);
-    const struct dig_trajectory dug     = dig_response_trajectory(set, trajectory, approach);
-    const double                own_m   = path_m(set, &dug);
-    const double                plain_m = path_m(set, &set->trajectory[trajectory]);
+    assert(expected != NULL);
+    double place[DIG_CURVE_POINTS];
+    dig_laid_places(set, trajectory, 1.0, depth, place);
     for (int c = 0; c < DIG_CHANNELS; c++) {
-        stretch(own_m, plain_m, expected->curve.mean[c]);
-        stretch(own_m, plain_m, expected->curve.sd[c]);
+        read_at(place, expected->curve.mean[c]);
+        read_at(place, expected->curve.sd[c]);
     }
 }

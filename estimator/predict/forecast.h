@@ -38,9 +38,9 @@ void dig_forecast_as_dug(const struct dig_curve_set *set, double lambda,
                          const struct dig_approach_error *error, void *memory,
                          struct dig_expected *expected);
 
-/// Converts its curve to the progress of the tick, which is along the plain trajectory: the later
-/// legs are the same, the first begins earlier or later.
-void dig_forecast_along_plain(const struct dig_curve_set *set, size_t trajectory,
-                              const struct dig_approach *approach, struct dig_expected *expected);
+/// Converts its curve, of a dig of this depth, to the progress of the tick, which is along the
+/// plain trajectory: the later legs are the same, the first begins earlier or later.
+void dig_forecast_along_plain(const struct dig_curve_set *set, size_t trajectory, double depth,
+                              struct dig_expected *expected);
 
 #endif // DIG_ESTIMATOR_PREDICT_FORECAST_H

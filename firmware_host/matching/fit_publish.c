@@ -47,7 +47,7 @@ void dig_fit_publish_basis_as_dug(struct dig_fit *const                fit,
     }
     if (dig != NULL) {
         dig_matcher_expect(matcher, &track->match, trajectory, &dig->approach, expected);
-        dig_forecast_along_plain(matcher->set, trajectory, &dig->approach, expected);
+        dig_forecast_along_plain(matcher->set, trajectory, dig->approach.depth, expected);
     } else {
         expected->valid     = false;
         expected->off_table = true;

@@ -98,23 +98,17 @@ static void publish_prediction(struct dig_publisher *const p)
     }
 }
 
-// A provisional match is published once; it expires by itself.
-static void publish_provisional(struct dig_publisher *const        p,
-                                const struct dig_fit_result *const result)
-{
-    if (p->output != NULL) {
-        check_sent(p, dig_output_match(p->output, result));
-    }
-}
-
 static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
 {
     bool                  news   = false;
     struct dig_fit_result before = p->result;
     struct dig_fit_result next;
     while (dig_ring_pop(p->results, &next)) {
+        // A provisional match is published once; it expires by itself.
         if (next.track.going_on) {
-            publish_provisional(p, &next);
+            if (p->output != NULL) {
+                check_sent(p, dig_output_match(p->output, &next));
+            }
             continue;
         }
         p->result = next;

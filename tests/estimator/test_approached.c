@@ -304,7 +304,7 @@ TEST(a_forecast_as_dug_lies_over_the_plain_path_where_its_legs_do)
         highest_Nm = fmax(highest_Nm, (double)expected.curve.mean[0][k]);
     }
     assert_close(expected.peak_Nm, 1e4 * highest_Nm, 1e-2 * expected.peak_Nm);
-    dig_forecast_along_plain(set, 0, &approach, &expected);
+    dig_forecast_along_plain(set, 0, approach.depth, &expected);
     const struct dig_trajectory dug   = approach_dug(0, approach);
     const struct dig_trajectory plain = approach_dug(0, dig_approach_plain());
     for (int k = 60; k < DIG_CURVE_POINTS; k += 20) { // behind the first leg: at equal times
