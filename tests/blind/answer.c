@@ -89,6 +89,9 @@ bool blind_justified(const struct blind_result *const r, const char *const name)
 
 enum blind_answer blind_answer_of(const struct blind_result *const r)
 {
+    if (r->state == BLIND_REFUSED) {
+        return BLIND_SAID_NOTHING;
+    }
     size_t there = 0;
     size_t wrong = 0;
     bool   named = r->order.effects > 0;

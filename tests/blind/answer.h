@@ -9,8 +9,9 @@
 #define BLIND_CLASSES 4 // of size: below 1, 1 to 2.25, 2.25 to 3, 3 and more
 
 enum blind_state {
-    BLIND_UNMADE, // the campaign could not be made
-    BLIND_FAILED, // the trace failed
+    BLIND_UNMADE,  // the campaign could not be made
+    BLIND_FAILED,  // the trace failed
+    BLIND_REFUSED, // it refused a recording: an answer, and never the right one
     BLIND_TRACED
 };
 
@@ -37,6 +38,7 @@ enum blind_answer {
     BLIND_SAID_NONE,
     BLIND_SAID_UNLISTED,
     BLIND_WRONG,
+    BLIND_SAID_NOTHING, // it refused
     BLIND_ANSWERS
 };
 

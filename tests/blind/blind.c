@@ -30,8 +30,8 @@ static const char help[] =
     "  --seed N          other seeds of that split: campaigns that no run has drawn before (0)\n"
     "  -n N              campaigns without an effect (100); those with one follow from it\n"
     "  -j N              at a time (1)\n"
-    "  --only NAME       only campaigns with this effect, or of this kind: none, single, pair,\n"
-    "                    outside\n"
+    "  --only NAME       only campaigns with this effect, of this kind (none, single, pair,\n"
+    "                    outside), or the one of this number\n"
     "  --keep DIR        leave every campaign, its trace and its truth there (dev only)\n"
     "  --make            make the campaigns, trace none (with --keep)\n"
     "  --json FILE       everything, for programs\n"
@@ -163,7 +163,11 @@ static void want(struct plan *const plan, const enum blind_kind kind, const int 
     }
     static const char *const name[BLIND_KINDS] = { "none", "single", "pair", "outside" };
 
+    char number[24];
+    (void)snprintf(number, sizeof number, "%llu", (unsigned long long)order.number);
+
     const bool this = plan->only == NULL || strcmp(plan->only, name[kind]) == 0 ||
+                      strcmp(plan->only, number) == 0 ||
                       (a != NULL && strcmp(plan->only, a->name) == 0) ||
                       (b != NULL && strcmp(plan->only, b->name) == 0);
     if (this && plan->orders < plan->most) {
@@ -213,6 +217,20 @@ static void remove_folder(const char *const folder)
     }
 }
 
+// Of a log: why the program ended. Left as it is where there is none.
+static void last_line(const char *const path, const size_t size, char line[])
+{
+    FILE *const file = fopen(path, "r");
+    char        text[1024];
+    while (file != NULL && fgets(text, sizeof text, file) != NULL) {
+        text[strcspn(text, "\n")] = '\0';
+        (void)snprintf(line, size, "%.*s", (int)size - 1, text);
+    }
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+}
+
 static void trace(const struct bench *const bench, const char *const folder,
                   struct blind_result *const r)
 {
@@ -227,7 +245,10 @@ static void trace(const struct bench *const bench, const char *const folder,
     const int        status = blind_spawn(words, log, 300, &r->cpu_s, &r->peak_B);
     struct dig_error error  = { "" };
     r->state                = BLIND_FAILED;
-    if (status != 0) {
+    if (status == 2) {
+        r->state = BLIND_REFUSED;
+        last_line(log, sizeof r->why, r->why);
+    } else if (status != 0) {
         (void)snprintf(r->why, sizeof r->why, "digloop ended with %d", status);
     } else if (blind_verdict_read(json, &r->verdict, &error) == DIG_OK) {
         r->state = BLIND_TRACED;

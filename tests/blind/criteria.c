@@ -82,6 +82,10 @@ static size_t whole(const struct blind_result *const r)
     (void)r;
     return 1;
 }
+static size_t traced(const struct blind_result *const r)
+{
+    return r->state == BLIND_TRACED;
+}
 static size_t is_quick(const struct blind_result *const r)
 {
     return r->cpu_s <= 10.0 && r->peak_B <= 500e6;
@@ -171,7 +175,7 @@ const struct blind_criterion blind_criterion[BLIND_CRITERIA] = {
     { "  another code", ANY, ANY, ALL, ANOTHER, gravel_beside, gravel_held, 0.75, true },
     { "  of its magnitude, our DEM", ANY, ANY, ALL, OURS, magnitude, magnitude_held, 0.85, true },
     { "  another code", ANY, ANY, ALL, ANOTHER, magnitude, magnitude_held, 0.75, true },
-    { "traced in 10 s of one core and 500 MB", ANY, ANY, ALL, ANY, whole, is_quick, 1.0, true },
+    { "traced in 10 s of one core and 500 MB", ANY, ANY, ALL, ANY, traced, is_quick, 1.0, true },
 };
 
 static bool fits(const int wanted, const int is)
@@ -179,11 +183,17 @@ static bool fits(const int wanted, const int is)
     return wanted == ANY || wanted == is;
 }
 
+// A refusal tells no gravel, no error and no time; of what there is it says nothing right.
+static bool answers(const struct blind_criterion *const c, const struct blind_result *const r)
+{
+    return r->state == BLIND_TRACED || (r->state == BLIND_REFUSED && c->about == whole);
+}
+
 static size_t about(const struct blind_criterion *const c, const struct blind_result *const r)
 {
     const double size = c->in_soil ? blind_size_in_soil(r) : blind_size_of(r);
     const int    code = strcmp(r->source, "ours") == 0 ? OURS : ANOTHER;
-    const bool   is   = r->state == BLIND_TRACED && fits(c->kind, (int)r->order.kind) &&
+    const bool   is   = answers(c, r) && fits(c->kind, (int)r->order.kind) &&
                     fits(c->class, blind_class_of_size(size)) && fits(c->code, code);
     return is ? c->about(r) : 0;
 }

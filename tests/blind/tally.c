@@ -11,8 +11,8 @@
 static const char *const class_title[BLIND_CLASSES] = { "below 1", "1 to 2.25", "2.25 to 3",
                                                         "3 and more" };
 
-static const char *const answer_title[BLIND_ANSWERS] = { "right", "in set",   "extra",
-                                                         "none",  "unlisted", "wrong" };
+static const char *const answer_title[BLIND_ANSWERS] = { "right",    "in set", "extra",  "none",
+                                                         "unlisted", "wrong",  "refused" };
 
 static int compare(const void *const a, const void *const b)
 {
@@ -86,7 +86,7 @@ static void print_class(const size_t n, const struct blind_result result[], cons
     for (size_t i = 0; i < n; i++) {
         const struct blind_result *const r = &result[i];
         char                             title[80];
-        if (r->state != BLIND_TRACED || r->order.kind == BLIND_NONE ||
+        if (r->state < BLIND_REFUSED || r->order.kind == BLIND_NONE ||
             r->order.kind == BLIND_PAIR || blind_class_of(r) != class) {
             continue;
         }
@@ -131,7 +131,7 @@ static void print_none(const size_t n, const struct blind_result result[], FILE 
             size_t false_ = 0;
             for (size_t i = 0; i < n; i++) {
                 const struct blind_result *const r = &result[i];
-                if (r->state == BLIND_TRACED && r->order.kind == BLIND_NONE &&
+                if (r->state >= BLIND_REFUSED && r->order.kind == BLIND_NONE &&
                     r->by_machine == (machine == 1) &&
                     (strcmp(r->source, "ours") == 0) == (ours == 1)) {
                     all++;
@@ -160,9 +160,9 @@ static size_t count_state(const size_t n, const struct blind_result result[],
 
 void blind_tally_print(const size_t n, const struct blind_result result[], FILE *const to)
 {
-    (void)fprintf(to, "%zu campaigns traced, %zu failed, %zu could not be made\n",
-                  count_state(n, result, BLIND_TRACED), count_state(n, result, BLIND_FAILED),
-                  count_state(n, result, BLIND_UNMADE));
+    (void)fprintf(to, "%zu campaigns traced, %zu refused, %zu failed, %zu could not be made\n",
+                  count_state(n, result, BLIND_TRACED), count_state(n, result, BLIND_REFUSED),
+                  count_state(n, result, BLIND_FAILED), count_state(n, result, BLIND_UNMADE));
     print_none(n, result, to);
     for (int c = BLIND_CLASSES - 1; c >= 0; c--) {
         print_class(n, result, c, to);

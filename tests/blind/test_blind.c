@@ -267,6 +267,32 @@ TEST(a_criterion_is_about_its_kind_and_size_alone)
     assert_int_equal(blind_criterion_judge(criterion("pairs"), 1, &r).n, 0);
 }
 
+// It found nothing, and so not what is there, and named nothing wrong.
+TEST(a_refusal_is_an_answer_that_is_never_right)
+{
+    struct blind_result r = answered("wear", "wear", 0.9);
+    r.state               = BLIND_REFUSED;
+    r.verdict             = (struct blind_verdict){ .names = 0 };
+    assert_int_equal(blind_answer_of(&r), BLIND_SAID_NOTHING);
+    const struct blind_share found = blind_criterion_judge(criterion("one effect, size 3"), 1, &r);
+    assert_int_equal(found.k, 0);
+    assert_int_equal(found.n, 1);
+    assert_int_equal(
+        blind_criterion_judge(criterion("one effect, size 3 and more: error"), 1, &r).n, 0);
+    assert_int_equal(blind_criterion_judge(criterion("holdout error"), 1, &r).n, 0);
+    assert_int_equal(blind_criterion_judge(criterion("traced in"), 1, &r).n, 0);
+    r.order.kind = BLIND_OUTSIDE;
+    assert_int_equal(blind_criterion_judge(criterion("outside the catalogue: a"), 1, &r).k, 0);
+    assert_int_equal(blind_criterion_judge(criterion("outside the catalogue, size"), 1, &r).k, 0);
+    assert_int_equal(blind_criterion_judge(criterion("outside the catalogue, size"), 1, &r).n, 1);
+    r.order.kind    = BLIND_NONE;
+    r.order.effects = 0;
+    assert_int_equal(blind_criterion_judge(criterion("no effect"), 1, &r).k, 1);
+    assert_int_equal(blind_criterion_judge(criterion("plain gravel"), 1, &r).n, 0);
+    r.state = BLIND_FAILED;
+    assert_int_equal(blind_criterion_judge(criterion("no effect"), 1, &r).n, 0);
+}
+
 TEST(the_pool_holds_whole_beds_of_known_gravel)
 {
     struct blind_pool pool  = { 0, NULL };
