@@ -185,6 +185,14 @@ void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, 
 {
     assert(trace != NULL && text != NULL && size > 0);
     text[0] = '\0';
+    if (trace->effects == 0 && trace->beyond) {
+        dig_text_add(
+            size, text,
+            "No effect is missing: the gravel lies beyond the table, and the prediction %s.",
+            trace->applied ? "is made with it"
+                           : "is not surely better with it and stays as it was");
+        return;
+    }
     if (trace->effects == 0) {
         dig_text_add(
             size, text, "%s",

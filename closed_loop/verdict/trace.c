@@ -89,6 +89,7 @@ static void fill_decision(const struct dig_trace_work *const w, struct dig_trace
     const bool                               machine = w->machine != NULL;
     trace->false_alarm                               = w->settings->false_alarm;
     trace->no_air                                    = air->no_air;
+    trace->beyond                                    = s->significant && s->outside;
     trace->significant = air->significant || (s->significant && !s->outside);
     trace->p_complete =
         machine ? fmin(1.0, 2.0 * fmin(air->p_complete, s->p_complete)) : s->p_complete;

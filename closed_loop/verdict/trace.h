@@ -40,6 +40,10 @@ struct dig_trace {
 
     bool no_air; // in the recordings of a machine: its effects cannot be told from the soil's
 
+    // No effect of the soil: a gravel beyond the table's grid explains the digs, and is what gravel
+    // is.
+    bool beyond;
+
     // The prediction was changed by what was found. False: nothing was found, or the change is not
     // worth making; then after is before, and a model of it is the gravel refitted alone.
     bool applied;

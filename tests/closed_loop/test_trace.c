@@ -14,18 +14,23 @@ enum { DIGS = 8, FEW = 3 };
 static struct dig_measured measured[DIGS];
 
 // Four simple and four real digs; the first identifies, the last two real ones are held out.
-static void dig_campaign(const size_t effects, const enum dig_effect_id effect,
-                         const double magnitude, uint64_t seed)
+static void campaign_of(const struct dig_gravel *const gravel, const size_t effects,
+                        const enum dig_effect_id effect, const double magnitude, uint64_t seed)
 {
-    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
     for (size_t i = 0; i < DIGS; i++) {
-        measured[i] = made_dig(&gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, effects, &effect,
+        measured[i] = made_dig(gravel, i % 2 == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, effects, &effect,
                                &magnitude, &seed);
         measured[i].order = i;
         measured[i].use   = i == 0 ? DIG_USE_IDENTIFY : DIG_USE_FIT;
     }
     measured[5].use = DIG_USE_HOLDOUT;
     measured[7].use = DIG_USE_HOLDOUT;
+}
+
+static void dig_campaign(const size_t effects, const enum dig_effect_id effect,
+                         const double magnitude, const uint64_t seed)
+{
+    campaign_of(&(struct dig_gravel){ { 0.6, 0.55, 2500 } }, effects, effect, magnitude, seed);
 }
 
 static enum dig_status run(struct dig_trace *const trace, struct dig_error *const error)
@@ -103,11 +108,25 @@ TEST(without_an_effect_before_and_after_are_the_same)
     assert_false(trace.significant);
     assert_int_equal(trace.effects, 0);
     assert_close(trace.after.value, trace.before.value, 1e-12);
-    assert_false(trace.applied);
+    assert_false(trace.applied || trace.beyond);
     assert_memory_equal(&trace.gravel_before, &trace.gravel, sizeof trace.gravel);
     assert_memory_equal(&trace.low_before, &trace.low, sizeof trace.low);
     assert_memory_equal(&trace.high_before, &trace.high, sizeof trace.high);
     assert_null(trace.unlisted);
+    dig_trace_finish(&trace);
+}
+
+// It is no effect, and the prediction is made with it all the same.
+TEST(a_gravel_beyond_the_grid_is_said_to_be_that)
+{
+    struct dig_trace        trace;
+    const struct dig_gravel beyond = { { 0.25, 0.05, 1200.0 } };
+    campaign_of(&beyond, 0, DIG_EFFECT_LAYERING, 0.0, 35);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+    assert_true(trace.beyond && trace.applied);
+    assert_false(trace.significant);
+    assert_int_equal(trace.effects, 0);
+    assert_true(trace.after.value < trace.before.value);
     dig_trace_finish(&trace);
 }
 

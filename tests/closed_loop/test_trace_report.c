@@ -421,6 +421,22 @@ TEST(what_is_named_and_not_applied_is_told)
     drop(e);
 }
 
+TEST(a_gravel_beyond_the_table_is_not_called_noise)
+{
+    struct example *const e = make();
+    char                  sentence[256];
+    e->trace.effects     = 0;
+    e->trace.significant = false;
+    e->trace.beyond      = true;
+    dig_trace_sentence(&e->trace, sizeof sentence, sentence);
+    assert_string_equal(sentence, "No effect is missing: the gravel lies beyond the table, and the "
+                                  "prediction is made with it.");
+    e->trace.applied = false;
+    dig_trace_sentence(&e->trace, sizeof sentence, sentence);
+    assert_contains(sentence, "stays as it was");
+    drop(e);
+}
+
 TEST(the_page_stands_alone_and_draws_every_dig)
 {
     struct example *const e     = make();
