@@ -7,18 +7,26 @@ static const double least_s      = 1.0;
 static const double over_below   = 10.0; // samples at the top over samples just below it
 static const double over_back    = 3.0;
 static const double just_below   = 0.01; // of the highest value
+static const double steps_below  = 1.5;  // or of the step that the readings make there
 static const double same_to_this = 1e-6;
 static const double least_pairs  = 50.0; // of readings that tell how often one repeats
 
-static double highest(const struct dig_machine_recording *const recording, const int signal)
+// The highest value below one; 0 where there is none.
+static double highest_below(const struct dig_machine_recording *const recording, const int signal,
+                            const double below_Pa)
 {
     double most = 0.0;
     for (size_t i = 0; i < recording->rows; i++) {
-        if (recording->row[i].valid[signal]) {
+        if (recording->row[i].valid[signal] && recording->row[i].value[signal] < below_Pa) {
             most = fmax(most, recording->row[i].value[signal]);
         }
     }
     return most;
+}
+
+static double highest(const struct dig_machine_recording *const recording, const int signal)
+{
+    return highest_below(recording, signal, INFINITY);
 }
 
 // Below this chance readings that stay equal are no accident of noise and steps.
@@ -71,7 +79,8 @@ static bool is_clipped(const struct dig_machine *const           machine,
 {
     const int    drive  = (signal - DIG_SIGNAL_BOOM_HEAD_Pa) / 2;
     const double most   = highest(recording, signal);
-    const double near   = fmax(just_below * most, 1.5 * machine->pressure_step_Pa);
+    const double next   = highest_below(recording, signal, most * (1.0 - same_to_this));
+    const double near   = fmax(just_below * most, steps_below * (most - next));
     double       at_top = 0.0;
     double       below  = 0.0;
     for (size_t i = 0; i < recording->rows; i++) {

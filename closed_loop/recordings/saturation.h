@@ -25,8 +25,8 @@ double dig_saturation_log10_chance(const struct dig_machine_recording *recording
 
 /// True when a chamber's pressure was cut off at its own highest value: that chance is below a
 /// thousandth, or it stands there for a second or more, ten times as long as just below (within a
-/// step, or 1 %) and above three times the return side's pressure, where a chamber may well be
-/// constant. *clip tells the worst; it is untouched otherwise. O(rows).
+/// step as the readings make there, or 1 %) and above three times the return side's pressure, where
+/// a chamber may well be constant. *clip tells the worst; it is untouched otherwise. O(rows).
 bool dig_saturation_find(const struct dig_machine           *machine,
                          const struct dig_machine_recording *recording, struct dig_clip *clip);
 

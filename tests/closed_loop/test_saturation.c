@@ -21,14 +21,13 @@ static double whole(const double value, const double step)
 }
 
 // A load that comes and goes in every chamber, in steps of step_Pa with noise of half of one, cut
-// off at limit_Pa; chamber 5 is a return side.
+// off at limit_Pa; chamber 5 is a return side. The machine's file may tell of finer steps.
 static struct bench make(const double step_Pa, const double noise, const double limit_Pa)
 {
     struct bench     b;
     struct dig_error error = { "" };
     assert_int_equal(dig_machine_read("config/machines/zx200_trench.yaml", &b.machine, &error),
                      DIG_OK);
-    b.machine.pressure_step_Pa = step_Pa;
     b.recording = (struct dig_machine_recording){ ROWS, calloc(ROWS, sizeof *b.recording.row) };
     assert_non_null(b.recording.row);
     unsigned seed = 7;
@@ -50,9 +49,9 @@ static struct bench make(const double step_Pa, const double noise, const double 
 
 TEST(a_load_that_comes_and_goes_is_whole)
 {
-    const double steps[]  = { 0.0, 2e5, 2e5, 1e3 };
-    const double noises[] = { 0.0, 0.0, 1e5, 1e5 };
-    for (int k = 0; k < 4; k++) {
+    const double steps[]  = { 0.0, 2e5, 2e5, 1e3, 5e5, 5e5 };
+    const double noises[] = { 0.0, 0.0, 1e5, 1e5, 0.0, 1e5 };
+    for (int k = 0; k < 6; k++) {
         struct bench    b    = make(steps[k], noises[k], 1e9);
         struct dig_clip clip = { .time_s = -7.0 };
         assert_false(dig_saturation_find(&b.machine, &b.recording, &clip));
@@ -63,9 +62,9 @@ TEST(a_load_that_comes_and_goes_is_whole)
 
 TEST(a_sensor_that_ends_is_named_with_its_limit)
 {
-    const double steps[]  = { 0.0, 2e5, 2e5, 1e3 };
-    const double noises[] = { 0.0, 0.0, 1e5, 1e5 };
-    for (int k = 0; k < 4; k++) {
+    const double steps[]  = { 0.0, 2e5, 2e5, 1e3, 5e5, 5e5 };
+    const double noises[] = { 0.0, 0.0, 1e5, 1e5, 0.0, 1e5 };
+    for (int k = 0; k < 6; k++) {
         struct bench    b    = make(steps[k], noises[k], 4e6);
         struct dig_clip clip = { .time_s = 0.0 };
         assert_true(dig_saturation_find(&b.machine, &b.recording, &clip));
