@@ -1,5 +1,7 @@
 #include "closed_loop/recordings/machine_dig.h"
 
+#include "closed_loop/recordings/pose_jump.h"
+#include "core/sample.h"
 #include "estimator/approach/approach_route.h"
 #include "estimator/track/recorded_dig.h"
 #include "estimator/wrench/cylinder.h"
@@ -423,6 +425,21 @@ static enum dig_status take_samples(const struct dig_machine *const           ma
                                dig->samples);
 }
 
+// Two recordings in one file: air across where they meet would show a motion that nobody made.
+static enum dig_status check_jump(const struct dig_machine_dig *const dig,
+                                  struct dig_error *const             error)
+{
+    struct dig_pose_jump jump;
+    if (dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s jumps by %.2g rad after t_s %.9g, where no machine moves so: "
+                             "expected angles in rad, and one recording a file",
+                             dig_signal_name(jump.signal), jump.rad,
+                             1e-9 * (double)dig->sample[jump.before].time_ns);
+    }
+    return DIG_OK;
+}
+
 enum dig_status dig_machine_dig_make(const struct dig_machine *const           machine,
                                      const struct dig_curve_set *const         set,
                                      const struct dig_machine_recording *const recording,
@@ -440,6 +457,9 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
                                         ? take_samples(machine, recording, &made, error)
                                         : dig_error_set(error, DIG_ENOMEM, "%zu samples", rows);
     made.lambda                   = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    if (status == DIG_OK) {
+        status = check_jump(&made, error);
+    }
     if (status == DIG_OK) {
         status = place(machine, set, trajectory, &v, &made, error);
     }

@@ -40,7 +40,8 @@ struct dig_machine_dig {
 };
 
 /// Lays a recording along its trajectory (-1: along any of the set's). DIG_ENOMATCH: it holds no
-/// dig along it; DIG_EINVAL: fewer than 50 such samples; DIG_ENOMEM. *error names which.
+/// dig along it; DIG_EINVAL: fewer than 50 such samples, or a jump of an angle; DIG_ENOMEM. *error
+/// names which.
 DIG_MUST_CHECK enum dig_status dig_machine_dig_make(const struct dig_machine           *machine,
                                                     const struct dig_curve_set         *set,
                                                     const struct dig_machine_recording *recording,
@@ -48,7 +49,7 @@ DIG_MUST_CHECK enum dig_status dig_machine_dig_make(const struct dig_machine    
                                                     struct dig_error *error);
 
 /// The same of a recording in which the bucket never touches the ground: all of it is air before a
-/// dig that never comes. DIG_EINVAL and DIG_ENOMEM as above.
+/// dig that never comes, jumps and all. DIG_EINVAL: fewer than 50 such samples; DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_machine_dig_make_air(const struct dig_machine           *machine,
                          const struct dig_machine_recording *recording, struct dig_machine_dig *dig,

@@ -184,6 +184,10 @@ mkdir "$work/cut" && cp "$work/whole/"* "$work/cut"
 awk -F, '!($1 > 12 && $1 < 13)' "$work/whole/b.csv" >"$work/cut/b.csv"
 check "rows missing within a dig are told as such" refuses "b.csv: its moment is not told: no whole sample for 1 s after t_s 12, expected none missing" -- traced "$work/cut"
 
+mkdir "$work/joined" && cp "$work/whole/"* "$work/joined"
+awk -F, -v OFS=, 'FNR == 1 { begin = last } FNR > 1 { last = $1 + .01; $1 += begin } FNR > 1 || NR == 1' OFMT=%.9g CONVFMT=%.9g "$work/whole/b.csv" "$work/whole/a.csv" >"$work/joined/b.csv"
+check "recordings put together are told as such" refuses "b.csv: bucket_rad jumps by" "one recording a file" -- traced "$work/joined"
+
 campaign one rig "$A$S" simpleA identify
 check "one dig is too few" refuses "expected two or more" -- traced "$work/one"
 campaign other another "$A$S" simpleA identify "$A$R" actual fit
