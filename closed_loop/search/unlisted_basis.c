@@ -71,56 +71,14 @@ bool dig_basis_paces_differ(const struct dig_whitened_digs *const batch)
     return r.most_pace > (1.0 + least_pace) * r.least_pace;
 }
 
-static double tooth_z_m(const struct dig_curve_set *const set, const struct dig_pose *const pose)
-{
-    return pose->z_m - set->tooth_m * cos(pose->theta_rad);
-}
-
-static double tooth_x_m(const struct dig_curve_set *const set, const struct dig_pose *const pose)
-{
-    return pose->x_m + set->tooth_m * sin(pose->theta_rad);
-}
-
-// What the trajectory tells at one point of the grid; acceleration is put in by the caller. A dig
-// starts with its tooth on the ground.
-static void describe(const struct dig_curve_set *const set, const struct dig_trajectory *const t,
-                     const double progress, double *const swept_m2, double *const before_m,
-                     double value[DIG_BASES])
-{
-    const double                  duration_s = dig_trajectory_duration_s(t);
-    const struct dig_pose         start      = dig_trajectory_pose(t, 0.0);
-    const double                  time_s     = dig_trajectory_time_s(t, set->tooth_m, progress);
-    const struct dig_pose         pose       = dig_trajectory_pose(t, time_s);
-    const struct dig_phase *const phase      = &t->phase[dig_trajectory_phase(t, time_s)];
-    const double depth_m = fmax(tooth_z_m(set, &start) - tooth_z_m(set, &pose), 0.0);
-    const double x_m     = tooth_x_m(set, &pose);
-    const double depth   = depth_m / set->tooth_m;
-    const double whole_m = dig_trajectory_path_m(t, set->tooth_m, duration_s);
-    const double rate_mps =
-        hypot(phase->vx_mps, phase->vz_mps) + set->tooth_m * fabs(phase->omega_radps);
-    *swept_m2 += depth_m * fabs(x_m - *before_m);
-    *before_m = x_m;
-
-    value[DIG_BASIS_AMPLITUDE]     = 1.0;
-    value[DIG_BASIS_DEPTH]         = depth;
-    value[DIG_BASIS_DEPTH_SQUARED] = depth * depth;
-    value[DIG_BASIS_FILL]          = *swept_m2 / (set->tooth_m * set->tooth_m);
-    value[DIG_BASIS_PATH]          = progress;
-    value[DIG_BASIS_SPEED]         = rate_mps * duration_s / whole_m;
-    value[DIG_BASIS_TURNING]       = set->tooth_m * phase->omega_radps / rate_mps;
-    value[DIG_BASIS_LIFTING]       = phase->vz_mps > 0.5 * rate_mps ? 1.0 : 0.0;
-}
-
 void dig_basis_along(const struct dig_curve_set *const set, const struct dig_measured *const dig,
                      double value[DIG_BASES][DIG_FEATURE_BINS])
 {
     assert(set != NULL && dig != NULL && value != NULL);
     const struct dig_trajectory *const t          = &set->trajectory[dig->trajectory];
+    const double                       tooth_m    = set->tooth_m;
     const double                       duration_s = dig_trajectory_duration_s(t);
-    const double                       whole_m = dig_trajectory_path_m(t, set->tooth_m, duration_s);
-    const struct dig_pose              start   = dig_trajectory_pose(t, 0.0);
-    double                             swept_m2 = 0.0;
-    double                             before_m = tooth_x_m(set, &start);
+    const double                       whole_m    = dig_trajectory_path_m(t, tooth_m, duration_s);
     double                             state[DIG_REGRESSORS][DIG_CURVE_POINTS];
     dig_regressors_along(set, dig, state);
     memset(value, 0, DIG_BASES * sizeof value[0]);
@@ -129,13 +87,27 @@ void dig_basis_along(const struct dig_curve_set *const set, const struct dig_mea
         size_t to;
         dig_feature_bin(b, &from, &to);
         for (size_t k = from; k < to; k++) {
-            double here[DIG_BASES];
-            describe(set, t, (double)k / (DIG_CURVE_POINTS - 1), &swept_m2, &before_m, here);
-            here[DIG_BASIS_SPEED] *= dig->pace;
-            here[DIG_BASIS_ACCELERATION] =
-                state[DIG_STATE_ACCELERATION_mps2][k] * duration_s * duration_s / whole_m;
-            here[DIG_BASIS_PASS]  = (double)dig->pass - 1.0;
-            here[DIG_BASIS_PITCH] = dig->pitch_known ? dig->pitch_rad : 0.0;
+            const double progress = state[DIG_REGRESSOR_PATH][k];
+            const double time_s   = dig_trajectory_time_s(t, tooth_m, progress);
+            const double depth    = state[DIG_STATE_DEPTH_m][k] / tooth_m;
+
+            const struct dig_phase *const phase = &t->phase[dig_trajectory_phase(t, time_s)];
+            const double                  rate_mps =
+                hypot(phase->vx_mps, phase->vz_mps) + tooth_m * fabs(phase->omega_radps);
+            const double here[DIG_BASES] = {
+                [DIG_BASIS_AMPLITUDE]     = 1.0,
+                [DIG_BASIS_DEPTH]         = depth,
+                [DIG_BASIS_DEPTH_SQUARED] = depth * depth,
+                [DIG_BASIS_FILL]          = state[DIG_STATE_FILL_m2][k] / (tooth_m * tooth_m),
+                [DIG_BASIS_PATH]          = progress,
+                [DIG_BASIS_SPEED]         = rate_mps * duration_s / whole_m * dig->pace,
+                [DIG_BASIS_TURNING]       = tooth_m * phase->omega_radps / rate_mps,
+                [DIG_BASIS_LIFTING]       = phase->vz_mps > 0.5 * rate_mps ? 1.0 : 0.0,
+                [DIG_BASIS_ACCELERATION] =
+                    state[DIG_STATE_ACCELERATION_mps2][k] * duration_s * duration_s / whole_m,
+                [DIG_BASIS_PASS]  = state[DIG_REGRESSOR_PASS][k] - 1.0,
+                [DIG_BASIS_PITCH] = dig->pitch_known ? dig->pitch_rad : 0.0,
+            };
             for (size_t f = 0; f < DIG_BASES; f++) {
                 value[f][b] += here[f] / (double)(to - from);
             }
