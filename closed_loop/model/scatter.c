@@ -143,11 +143,7 @@ static double size_of(const double lower[DIG_FEATURES][DIG_FEATURES], const stru
     double whitened[DIG_FEATURES];
     memcpy(whitened, told->of->value, sizeof whitened);
     dig_lower_solve(DIG_FEATURES, &lower[0][0], whitened);
-    double sum = 0.0;
-    for (size_t i = 0; i < DIG_FEATURES; i++) {
-        sum += whitened[i] * whitened[i];
-    }
-    return sum / DIG_FEATURES / told->freedom;
+    return dig_product(DIG_FEATURES, whitened, whitened) / DIG_FEATURES / told->freedom;
 }
 
 // Fits the factor: sizes of residuals over strength, weighted by their freedom.

@@ -5,6 +5,15 @@
 #include <assert.h>
 #include <math.h>
 
+double dig_product(const size_t n, const double a[], const double b[])
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
 // Four sums side by side, of which none waits for another.
 static inline double dot(const size_t n, const double a[], const double b[])
 {

@@ -8,6 +8,9 @@
 
 #include <stddef.h>
 
+/// The product of two vectors, summed from the first element on.
+double dig_product(size_t n, const double a[], const double b[]);
+
 /// Overwrites the lower triangle of the n x n matrix a with L of a = L L'; what stands above the
 /// diagonal is neither read nor written. DIG_EINVAL when a is not positive definite; a is then
 /// unspecified. O(n^3 / 3).

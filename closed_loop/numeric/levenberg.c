@@ -11,15 +11,6 @@ enum { SQUARE = DIG_LEVENBERG_UNKNOWNS * DIG_LEVENBERG_UNKNOWNS };
 
 static const double enough = 1e-3; // a fall of the sum of squares that is none
 
-static double sum_of_squares(const size_t n, const double r[])
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += r[i] * r[i];
-    }
-    return sum;
-}
-
 static void clip(const struct dig_levenberg *const p, double x[])
 {
     for (size_t j = 0; j < p->unknowns; j++) {
@@ -57,20 +48,17 @@ static void normal_equations(const struct dig_levenberg *const p, const double x
     const size_t n = p->unknowns;
     bool         held[DIG_LEVENBERG_UNKNOWNS];
     for (size_t j = 0; j < n; j++) {
-        gradient[j] = 0.0;
-        for (size_t i = 0; i < p->residuals; i++) {
-            gradient[j] += jacobian[j * p->residuals + i] * r[i];
-        }
-        held[j] = !(p->high[j] > p->low[j]) || (x[j] <= p->low[j] && gradient[j] > 0.0) ||
+        gradient[j] = dig_product(p->residuals, jacobian + j * p->residuals, r);
+        held[j]     = !(p->high[j] > p->low[j]) || (x[j] <= p->low[j] && gradient[j] > 0.0) ||
                   (x[j] >= p->high[j] && gradient[j] < 0.0);
         gradient[j] = held[j] ? 0.0 : gradient[j];
     }
     for (size_t a = 0; a < n; a++) {
         for (size_t b = 0; b <= a; b++) {
-            double sum = 0.0;
-            for (size_t i = 0; !held[a] && !held[b] && i < p->residuals; i++) {
-                sum += jacobian[a * p->residuals + i] * jacobian[b * p->residuals + i];
-            }
+            const double sum  = held[a] || held[b]
+                                    ? 0.0
+                                    : dig_product(p->residuals, jacobian + a * p->residuals,
+                                                  jacobian + b * p->residuals);
             normal[a * n + b] = sum;
             normal[b * n + a] = sum;
         }
@@ -101,7 +89,7 @@ static bool take_step(const struct dig_levenberg *const p, const double normal[]
     }
     clip(p, tried);
     p->residual(p->context, tried, r);
-    const double there = sum_of_squares(p->residuals, r);
+    const double there = dig_product(p->residuals, r, r);
     if (!(there < *squares)) {
         return false;
     }
@@ -122,7 +110,7 @@ void dig_levenberg_run(const struct dig_levenberg *const problem, double x[], do
     bool          better                           = true;
     clip(problem, x);
     problem->residual(problem->context, x, r);
-    double sum = sum_of_squares(problem->residuals, r);
+    double sum = dig_product(problem->residuals, r, r);
     for (int i = 0; i < problem->iterations && better; i++) {
         differentiate(problem, x, r, jacobian);
         normal_equations(problem, x, r, jacobian, product, gradient);

@@ -58,14 +58,9 @@ static void measure(const struct dig_whitened_digs *const batch,
         const struct dig_whitened_digs_dig *const   dig   = &batch->dig[i];
         const struct dig_whitened_digs_group *const group = &batch->group[dig->group];
         double                                      model[DIG_FEATURES];
-        double                                      both = 0.0;
-        double                                      own  = 0.0;
         dig_fitted_whitened(batch, &fresh, dig->group, &batch->measured[dig->measured], model);
-        for (size_t k = 0; k < group->features; k++) {
-            both += dig->y[k] * model[k];
-            own += model[k] * model[k];
-        }
-        sizes->factor[i] = both / own;
+        const double own = dig_product(group->features, model, model);
+        sizes->factor[i] = dig_product(group->features, dig->y, model) / own;
         sizes->weight[i] = own / pow(worn(batch, fitted->number[DIG_AT_U(wear)], dig), 2.0);
         sizes->group[i]  = dig->group;
 

@@ -1,5 +1,6 @@
 #include "closed_loop/search/portmanteau.h"
 
+#include "closed_loop/numeric/dense.h"
 #include "closed_loop/search/null_simulation.h"
 #include "core/chance.h"
 
@@ -11,11 +12,8 @@ enum { BOOTSTRAPS = 1000 };
 double dig_portmanteau(const size_t n, const double z[])
 {
     assert(n == 0 || z != NULL);
-    double squares = 0.0;
-    double sum     = 0.0;
-    for (size_t k = 0; k < n; k++) {
-        squares += z[k] * z[k];
-    }
+    const double squares = dig_product(n, z, z);
+    double       sum     = 0.0;
     for (size_t lag = 1; squares > 0.0 && lag <= DIG_PORTMANTEAU_LAGS && lag < n; lag++) {
         double r = 0.0;
         for (size_t k = 0; k + lag < n; k++) {

@@ -1,5 +1,7 @@
 #include "closed_loop/search/rock.h"
 
+#include "closed_loop/numeric/dense.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -99,10 +101,7 @@ static void put_place(const struct room *const r, const double ahead_m, struct p
         }
         dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, p->feature[g]);
         dig_whitened_digs_whiten(&r->batch->group[g], p->feature[g], p->y[g]);
-        p->squares[g] = 0.0;
-        for (size_t k = 0; k < r->batch->group[g].features; k++) {
-            p->squares[g] += p->y[g][k] * p->y[g][k];
-        }
+        p->squares[g] = dig_product(r->batch->group[g].features, p->y[g], p->y[g]);
     }
 }
 
@@ -140,16 +139,13 @@ static void fit_factors(const struct room *const r, const struct place *const p,
         const struct dig_whitened_digs_group *const group = &r->batch->group[g];
         double                                      rest[DIG_FEATURES];
         double                                      hump[DIG_FEATURES];
-        double                                      along = 0.0;
         rest_of(r, fitted, r->batch, g, rest);
         memcpy(hump, p->y[g], sizeof hump);
         (void)dig_common_error_squares(group, &error[g], rest);
-        const double squares = dig_common_error_squares(group, &error[g], hump);
-        for (size_t k = 0; k < group->features; k++) {
-            along += hump[k] * rest[k];
-        }
-        const bool is_there = p->squares[g] > least_hump * most_squares[g];
-        factor[g]           = is_there ? fmax(along / squares, 0.0) : 0.0;
+        const double squares  = dig_common_error_squares(group, &error[g], hump);
+        const double along    = dig_product(group->features, hump, rest);
+        const bool   is_there = p->squares[g] > least_hump * most_squares[g];
+        factor[g]             = is_there ? fmax(along / squares, 0.0) : 0.0;
     }
 }
 

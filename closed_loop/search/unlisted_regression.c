@@ -111,15 +111,9 @@ static double explain(const struct regression *const r, const size_t functions,
     double right[COLUMNS_MAX];
     *columns = 0;
     for (size_t i = 0; i < n; i++) {
-        right[i] = 0.0;
-        for (size_t k = 0; k < r->rows; k++) {
-            right[i] += column[i][k] * r->y[k];
-        }
+        right[i] = dig_product(r->rows, column[i], r->y);
         for (size_t j = 0; j <= i; j++) {
-            normal[i * n + j] = 0.0;
-            for (size_t k = 0; k < r->rows; k++) {
-                normal[i * n + j] += column[i][k] * column[j][k];
-            }
+            normal[i * n + j] = dig_product(r->rows, column[i], column[j]);
         }
         *columns += normal[i * n + i] > 1e-9 ? 1 : 0;
         normal[i * n + i] = normal[i * n + i] * (1.0 + 1e-9) + 1e-9;
@@ -128,11 +122,7 @@ static double explain(const struct regression *const r, const size_t functions,
         return 0.0;
     }
     dig_lower_solve(n, normal, right);
-    double taken = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        taken += right[i] * right[i];
-    }
-    return taken;
+    return dig_product(n, right, right);
 }
 
 // The best functions of so many, one after the other.
