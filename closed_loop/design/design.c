@@ -8,11 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-struct dig_design_settings dig_design_settings_default(void)
-{
-    return (struct dig_design_settings){ .draws = 400, .seed = 1 };
-}
-
 // Gravels to average over, away from the table's edge; an axis of one point has one place.
 static void make_places(struct dig_design_table *const table)
 {
@@ -56,7 +51,7 @@ static enum dig_status weigh_gravel(const struct dig_design_table *const table, 
             double unit[DIG_AXES] = { 0.0 };
             unit[a]               = 1.0;
             dig_lower_solve(DIG_AXES, v.normal_lower, unit);
-            left[a][i] = sqrt(DIG_DESIGN_PRIOR * dig_design_product(DIG_AXES, unit, unit));
+            left[a][i] = sqrt(DIG_DESIGN_PRIOR * dig_product(DIG_AXES, unit, unit));
         }
     }
     for (size_t a = 0; a < DIG_AXES; a++) {
@@ -144,17 +139,16 @@ static enum dig_status weigh_all(const struct dig_design_table *const table,
 
 enum dig_status dig_design_run(const struct dig_response_surface *const surface,
                                const struct dig_scatter *const          scatter,
-                               const struct dig_soil *const             soil,
-                               const struct dig_design_settings *const  settings,
-                               struct dig_design *const                 design)
+                               const struct dig_soil *const soil, const size_t draws,
+                               const uint64_t seed, struct dig_design *const design)
 {
-    assert(surface != NULL && scatter != NULL && settings != NULL && design != NULL);
+    assert(surface != NULL && scatter != NULL && design != NULL);
     struct dig_design_table table = { .surface = surface, .scatter = scatter, .soil = soil };
     struct dig_design       made  = { .digs = 0 };
     make_places(&table);
     enum dig_status status = weigh_all(&table, &made);
     if (status == DIG_OK) {
-        status = dig_design_simulate(&table, settings, &made);
+        status = dig_design_simulate(&table, draws, seed, &made);
     }
     if (status == DIG_OK) {
         *design = made;

@@ -58,19 +58,11 @@ struct dig_design {
     bool   confirmed;
 };
 
-struct dig_design_settings {
-    size_t   draws; // 400
-    uint64_t seed;
-};
-
-struct dig_design_settings dig_design_settings_default(void);
-
-/// Computes it in a second or two, on 1 MB of stack. soil NULL: nothing about effects. DIG_EINVAL:
-/// no simple trajectory; DIG_ENOMEM. Writes *design on success only.
+/// Computes it in a second or two with 400 draws, on 1 MB of stack. soil NULL: nothing about
+/// effects. DIG_EINVAL: no simple trajectory; DIG_ENOMEM. Writes *design on success only.
 DIG_MUST_CHECK enum dig_status dig_design_run(const struct dig_response_surface *surface,
                                               const struct dig_scatter          *scatter,
-                                              const struct dig_soil             *soil,
-                                              const struct dig_design_settings  *settings,
-                                              struct dig_design                 *design);
+                                              const struct dig_soil *soil, size_t draws,
+                                              uint64_t seed, struct dig_design *design);
 
 #endif // DIG_CLOSED_LOOP_DESIGN_DESIGN_H

@@ -41,8 +41,8 @@ struct sigmas {
 // By how much two remainders differ when the second may have any size and sign that is there.
 static double differ(const size_t n, const double a[], const double b[])
 {
-    const double bb    = dig_design_product(n, b, b);
-    const double share = bb > 0.0 ? fmin(fmax(dig_design_product(n, a, b) / bb, -2.0), 2.0) : 0.0;
+    const double bb    = dig_product(n, b, b);
+    const double share = bb > 0.0 ? fmin(fmax(dig_product(n, a, b) / bb, -2.0), 2.0) : 0.0;
     double       sum   = 0.0;
     for (size_t k = 0; k < n; k++) {
         sum += (a[k] - share * b[k]) * (a[k] - share * b[k]);
@@ -58,7 +58,7 @@ static void weigh_place(const struct dig_design_table *const table, const size_t
     for (int e = 0; e < DIG_EFFECTS; e++) {
         if (dig->tells[e]) {
             remainder_of(table, (enum dig_effect_id)e, t, table->place[i], v, d[e]);
-            s->alone[e][i] = sqrt(dig_design_product(v->n, d[e], d[e]));
+            s->alone[e][i] = sqrt(dig_product(v->n, d[e], d[e]));
         }
     }
     for (int a = 0; a < DIG_EFFECTS; a++) {

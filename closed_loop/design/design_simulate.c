@@ -110,11 +110,7 @@ static void identify(const struct node node[], const double y[N], double place[D
             off[k] = y[k] - node[i].mean[k];
         }
         dig_lower_solve(N, node[i].lower, off);
-        double sum = node[i].log_det;
-        for (size_t k = 0; k < N; k++) {
-            sum += off[k] * off[k];
-        }
-        log_p[i] = -0.5 * sum;
+        log_p[i] = -0.5 * (node[i].log_det + dig_product(N, off, off));
         most     = fmax(most, log_p[i]);
     }
     double whole         = 0.0;
@@ -215,36 +211,35 @@ static void draw_place(const struct dig_response_surface *const surface, const u
     }
 }
 
-enum dig_status dig_design_simulate(const struct dig_design_table *const    table,
-                                    const struct dig_design_settings *const settings,
-                                    struct dig_design *const                design)
+enum dig_status dig_design_simulate(const struct dig_design_table *const table, const size_t draws,
+                                    const uint64_t seed, struct dig_design *const design)
 {
     const struct dig_response_surface *const surface = table->surface;
-    assert(design->ranked > 0 && settings->draws > 0);
+    assert(design->ranked > 0 && draws > 0);
     const size_t    digs = design->digs;
     struct node     node[GRID];
-    double *const   square = calloc(settings->draws * digs, sizeof *square);
+    double *const   square = calloc(draws * digs, sizeof *square);
     enum dig_status status = square != NULL ? DIG_OK : DIG_ENOMEM;
     for (size_t t = 0; t < digs && status == DIG_OK; t++) {
         struct dig_design_dig *const dig = &design->dig[t];
         if (!dig->known) {
             continue;
         }
-        uint64_t seed = settings->seed + t;
-        status        = fill_nodes(table, t, node);
-        for (size_t i = 0; i < settings->draws && status == DIG_OK; i++) {
+        uint64_t state = seed + t;
+        status         = fill_nodes(table, t, node);
+        for (size_t i = 0; i < draws && status == DIG_OK; i++) {
             double is[DIG_AXES];
             double found[DIG_AXES];
             double y[N];
-            draw_place(surface, settings->seed, i, is);
-            draw_dig(table, t, is, &seed, y);
+            draw_place(surface, seed, i, is);
+            draw_dig(table, t, is, &state, y);
             identify(node, y, found);
             square[i * digs + t] = take_error(surface, is, found, dig);
             dig->target_error += target_square(surface, design->target, is, found);
         }
     }
     if (status == DIG_OK) {
-        finish_errors(design, square, settings->draws);
+        finish_errors(design, square, draws);
     }
     free(square);
     return status;

@@ -7,15 +7,6 @@
 
 static const double step = 0.02; // of the derivatives, in places
 
-double dig_design_product(const size_t n, const double a[], const double b[])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < n; k++) {
-        sum += a[k] * b[k];
-    }
-    return sum;
-}
-
 enum dig_status dig_design_look(const struct dig_design_table *const table, const size_t t,
                                 const double place[DIG_AXES], const size_t n,
                                 struct dig_design_view *const v)
@@ -41,7 +32,7 @@ enum dig_status dig_design_look(const struct dig_design_table *const table, cons
     }
     for (size_t a = 0; a < DIG_AXES; a++) {
         for (size_t b = 0; b < DIG_AXES; b++) {
-            const double sum                  = dig_design_product(n, v->slope[a], v->slope[b]);
+            const double sum                  = dig_product(n, v->slope[a], v->slope[b]);
             v->normal[a * DIG_AXES + b]       = sum;
             v->normal_lower[a * DIG_AXES + b] = sum + (a == b ? DIG_DESIGN_PRIOR : 0.0);
         }
@@ -63,7 +54,7 @@ void dig_design_take_gravel_off(const struct dig_design_view *const v, double d[
 {
     double g[DIG_AXES];
     for (size_t a = 0; a < DIG_AXES; a++) {
-        g[a] = dig_design_product(v->n, v->slope[a], d);
+        g[a] = dig_product(v->n, v->slope[a], d);
     }
     dig_cholesky_solve(DIG_AXES, v->normal_lower, g);
     for (size_t k = 0; k < v->n; k++) {

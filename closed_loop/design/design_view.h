@@ -45,8 +45,6 @@ double dig_design_bits(const double normal[DIG_AXES * DIG_AXES]);
 /// Takes off a whitened vector what a change of the gravel would explain of it.
 void dig_design_take_gravel_off(const struct dig_design_view *view, double d[]);
 
-double dig_design_product(size_t n, const double a[], const double b[]);
-
 /// Fills what *dig says of effects (design_effects.c).
 DIG_MUST_CHECK enum dig_status dig_design_effects(const struct dig_design_table *table,
                                                   size_t trajectory, struct dig_design_dig *dig);
@@ -55,8 +53,8 @@ DIG_MUST_CHECK enum dig_status dig_design_effects(const struct dig_design_table 
 /// table's own packings, and identifies it from the moment by its posterior mean on a grid: how
 /// right the theory is. Fills the simulated members of *design, whose ranking stands
 /// (design_simulate.c).
-DIG_MUST_CHECK enum dig_status dig_design_simulate(const struct dig_design_table    *table,
-                                                   const struct dig_design_settings *settings,
-                                                   struct dig_design                *design);
+DIG_MUST_CHECK enum dig_status dig_design_simulate(const struct dig_design_table *table,
+                                                   size_t draws, uint64_t seed,
+                                                   struct dig_design *design);
 
 #endif // DIG_CLOSED_LOOP_DESIGN_DESIGN_VIEW_H

@@ -35,9 +35,8 @@ static void drop(struct bench *const b)
 
 static struct dig_design run(const struct bench *const b, const size_t draws)
 {
-    const struct dig_design_settings settings = { .draws = draws, .seed = 3 };
-    struct dig_design                design;
-    assert_int_equal(dig_design_run(b->surface, b->scatter, NULL, &settings, &design), DIG_OK);
+    struct dig_design design;
+    assert_int_equal(dig_design_run(b->surface, b->scatter, NULL, draws, 3, &design), DIG_OK);
     return design;
 }
 
@@ -150,9 +149,8 @@ TEST(a_table_without_a_simple_dig_is_refused)
     for (size_t t = 0; t < b.set->trajectories; t++) {
         b.set->trajectory[t].phases = DIG_DESIGN_SIMPLE_PHASES + 1;
     }
-    const struct dig_design_settings settings = dig_design_settings_default();
-    struct dig_design                design   = { .digs = 77 };
-    assert_int_equal(dig_design_run(b.surface, b.scatter, NULL, &settings, &design), DIG_EINVAL);
+    struct dig_design design = { .digs = 77 };
+    assert_int_equal(dig_design_run(b.surface, b.scatter, NULL, 400, 1, &design), DIG_EINVAL);
     assert_int_equal(design.digs, 77);
     drop(&b);
 }

@@ -10,10 +10,9 @@
 static struct dig_design design_of(const char *const path, const uint64_t seed,
                                    char recommended[DIG_NAME_SIZE], char reference[DIG_NAME_SIZE])
 {
-    const struct dig_design_settings settings = { .draws = 1200, .seed = seed };
-    struct dig_design                design;
+    struct dig_design design;
     shipped_load(path, NULL);
-    assert_int_equal(dig_design_run(surface, scatter, NULL, &settings, &design), DIG_OK);
+    assert_int_equal(dig_design_run(surface, scatter, NULL, 1200, seed, &design), DIG_OK);
     memcpy(recommended, set->trajectory[design.rank[0]].name, DIG_NAME_SIZE);
     memcpy(reference, set->trajectory[design.reference].name, DIG_NAME_SIZE);
     (void)shipped_teardown(NULL);

@@ -8,6 +8,8 @@
 
 #include <stdlib.h>
 
+enum { DRAWS = 400, SEED = 1 };
+
 // What the effects add, where a table of them is given or lies beside the table.
 static enum dig_status make_soil(const struct digloop_job *const          job,
                                  const struct dig_response_surface *const surface,
@@ -30,11 +32,10 @@ static enum dig_status make_soil(const struct digloop_job *const          job,
 
 enum dig_status digloop_design(const struct digloop_job *const job, struct dig_error *const error)
 {
-    const struct dig_design_settings   settings = dig_design_settings_default();
-    struct dig_response_surface *const surface  = calloc(1, sizeof *surface);
-    struct dig_design *const           design   = calloc(1, sizeof *design);
-    struct dig_scatter                *scatter  = NULL;
-    struct dig_soil                   *soil     = NULL;
+    struct dig_response_surface *const surface = calloc(1, sizeof *surface);
+    struct dig_design *const           design  = calloc(1, sizeof *design);
+    struct dig_scatter                *scatter = NULL;
+    struct dig_soil                   *soil    = NULL;
     enum dig_status status = surface != NULL && design != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
         status = dig_response_surface_fit(job->set, surface);
@@ -51,7 +52,7 @@ enum dig_status digloop_design(const struct digloop_job *const job, struct dig_e
     if (status != DIG_OK) {
         goto done;
     }
-    status = dig_design_run(surface, scatter, soil, &settings, design);
+    status = dig_design_run(surface, scatter, soil, DRAWS, SEED, design);
     if (status != DIG_OK) {
         (void)dig_error_set(error, status, "%s: holds no simple trajectory, expected one or more",
                             job->options->table);
