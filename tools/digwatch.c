@@ -45,19 +45,13 @@ struct watch {
     struct dig_error        damage; // of a log
 };
 
-static void take(void *const context, const struct dig_lcm_event *const event)
-{
-    struct watch *const w = context;
-    digwatch_model_take(&w->model, event);
-    w->heard_s = now_s();
-}
-
 static void read_messages(struct watch *const w)
 {
-    const struct digwatch_taker taker = { w, take };
+    const int64_t heard = w->model.messages + w->model.misread;
     // The screen shows the damage; the log has ended there.
-    const enum dig_status status = digwatch_source_read(w->source, now_s(), &taker, &w->damage);
+    const enum dig_status status = digwatch_source_read(w->source, now_s(), &w->model, &w->damage);
     (void)status;
+    w->heard_s = w->model.messages + w->model.misread > heard ? now_s() : w->heard_s;
 }
 
 // Sleeps until a key, a message or the time due_s; false when the terminal is gone.

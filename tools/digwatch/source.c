@@ -84,14 +84,13 @@ static double pause_s(const int64_t from_us, const int64_t to_us)
 }
 
 static enum dig_status read_log(struct digwatch_source *const s, const double now_s,
-                                const struct digwatch_taker *const taker,
-                                struct dig_error *const            error)
+                                struct digwatch_model *const model, struct dig_error *const error)
 {
     // The first message is due now.
     s->due_s = s->due_s > 0.0 ? s->due_s : now_s;
     for (int n = 0; n < AT_ONCE && s->next != NULL && s->due_s <= now_s; n++) {
         const int64_t before_us = s->next->time_us;
-        taker->take(taker->context, s->next);
+        digwatch_model_take(model, s->next);
         const enum dig_status status = dig_lcm_log_next(s->log, &s->next, error);
         if (status != DIG_OK) {
             s->next = NULL;
@@ -109,7 +108,7 @@ static int64_t wall_us(void)
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-static void read_network(struct digwatch_source *const s, const struct digwatch_taker *const taker)
+static void read_network(struct digwatch_source *const s, struct digwatch_model *const model)
 {
     ssize_t size;
     for (int n = 0; n < AT_ONCE && (size = recv(s->fd, s->datagram, sizeof s->datagram, 0)) >= 0;
@@ -117,20 +116,20 @@ static void read_network(struct digwatch_source *const s, const struct digwatch_
         struct dig_lcm_event event = { .time_us = wall_us() };
         if (dig_lcm_datagram(s->datagram, (size_t)size, &event) &&
             dig_lcm_message_is_known(event.channel)) {
-            taker->take(taker->context, &event);
+            digwatch_model_take(model, &event);
         }
     }
 }
 
 enum dig_status digwatch_source_read(struct digwatch_source *const source, const double now_s,
-                                     const struct digwatch_taker *const taker,
-                                     struct dig_error *const            error)
+                                     struct digwatch_model *const model,
+                                     struct dig_error *const      error)
 {
-    assert(source != NULL && taker != NULL && taker->take != NULL);
+    assert(source != NULL && model != NULL);
     if (source->fd < 0) {
-        return read_log(source, now_s, taker, error);
+        return read_log(source, now_s, model, error);
     }
-    read_network(source, taker);
+    read_network(source, model);
     return DIG_OK;
 }
 

@@ -4,17 +4,11 @@
 #define DIG_TOOLS_DIGWATCH_SOURCE_H
 
 #include "core/error.h"
-#include "files/lcm/lcm_message.h"
+#include "tools/digwatch/model.h"
 
 #include <stdbool.h>
 
 struct digwatch_source;
-
-/// What to do with each message of the daemon's channels.
-struct digwatch_taker {
-    void *context;
-    void (*take)(void *context, const struct dig_lcm_event *event);
-};
 
 /// Listens on an LCM network, to the daemon's channels alone. Fails as digwatch_multicast_open().
 DIG_MUST_CHECK enum dig_status
@@ -26,11 +20,11 @@ DIG_MUST_CHECK enum dig_status digwatch_source_play(const char *path, double spe
                                                     struct digwatch_source **source,
                                                     struct dig_error        *error);
 
-/// Hands on what is due at now_s (of a clock that only grows), a bounded number of messages. Fails
-/// where the log is damaged; it has ended then.
+/// Lets the model take what is due at now_s (of a clock that only grows), a bounded number of
+/// messages of the daemon's channels. Fails where the log is damaged; it has ended then.
 DIG_MUST_CHECK enum dig_status digwatch_source_read(struct digwatch_source *source, double now_s,
-                                                    const struct digwatch_taker *taker,
-                                                    struct dig_error            *error);
+                                                    struct digwatch_model *model,
+                                                    struct dig_error      *error);
 
 /// What to wait on: a descriptor that becomes readable, or -1, and when the next message of a log
 /// is due, or infinity.
