@@ -1,3 +1,6 @@
+// strsep() is BSD's, not POSIX's.
+#define _DEFAULT_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+
 #include "files/text/csv.h"
 
 #include "core/regular.h"
@@ -32,16 +35,8 @@ struct reader {
 // Cuts the next line off *rest, without its end; NULL at the end of the text.
 static char *next_line(char **const rest)
 {
-    char *const line = *rest;
-    if (line == NULL || *line == '\0') {
-        return NULL;
-    }
-    char *const end = strchr(line, '\n');
-    *rest           = end != NULL ? end + 1 : NULL;
-    if (end != NULL) {
-        *end = '\0';
-    }
-    const size_t length = strlen(line);
+    char *const  line   = *rest != NULL && **rest != '\0' ? strsep(rest, "\n") : NULL;
+    const size_t length = line != NULL ? strlen(line) : 0;
     if (length > 0 && line[length - 1] == '\r') {
         line[length - 1] = '\0';
     }
@@ -51,14 +46,9 @@ static char *next_line(char **const rest)
 // Cuts the next field off the rest of a line, without the blanks around it; NULL at its end.
 static char *next_field(char **const rest)
 {
-    char *field = *rest;
+    char *field = strsep(rest, ",");
     if (field == NULL) {
         return NULL;
-    }
-    char *const comma = strchr(field, ',');
-    *rest             = comma != NULL ? comma + 1 : NULL;
-    if (comma != NULL) {
-        *comma = '\0';
     }
     field += strspn(field, " \t");
     size_t length = strlen(field);

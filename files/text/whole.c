@@ -16,41 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define BYTES_MAX ((size_t)256 << 20)
-
-static enum dig_status read_stream(FILE *const file, char **const text, size_t *const size)
-{
-    size_t room = 1 << 16;
-    size_t used = 0;
-    char  *all  = malloc(room);
-    while (all != NULL) {
-        used += fread(all + used, 1, room - 1 - used, file);
-        if (used < room - 1) {
-            break;
-        }
-        if (room > BYTES_MAX) {
-            free(all);
-            return DIG_EINVAL;
-        }
-        char *const more = realloc(all, room * 2);
-        if (more == NULL) {
-            free(all);
-        }
-        all = more;
-        room *= 2;
-    }
-    if (all == NULL) {
-        return DIG_ENOMEM;
-    }
-    if (ferror(file)) {
-        free(all);
-        return DIG_EIO;
-    }
-    all[used] = '\0';
-    *text     = all;
-    *size     = used;
-    return DIG_OK;
-}
+#define BYTES_MAX (256LL << 20)
 
 enum dig_status dig_file_read(const char *const path, char **const text, size_t *const size,
                               struct dig_error *const error)
@@ -58,32 +24,36 @@ enum dig_status dig_file_read(const char *const path, char **const text, size_t 
     assert(path != NULL && text != NULL && size != NULL);
 
     FILE           *file   = NULL;
-    char           *all    = NULL;
-    size_t          used   = 0;
     enum dig_status status = dig_regular_open(path, &file, error);
     if (status != DIG_OK) {
         return status;
     }
-    status        = read_stream(file, &all, &used);
-    const int why = errno;
-    (void)fclose(file);
-    if (status == DIG_EINVAL) {
-        return dig_error_set(error, status, "%s: larger than 256 MiB, expected less", path);
+    struct stat found;
+    if (fstat(fileno(file), &found) == 0 && found.st_size > BYTES_MAX) {
+        (void)fclose(file);
+        return dig_error_set(error, DIG_EINVAL, "%s: larger than 256 MiB, expected less", path);
     }
+    // Up to a NUL, which no text holds, or to the end.
+    size_t        room   = 1;
+    char         *all    = calloc(1, room);
+    const ssize_t length = all != NULL ? getdelim(&all, &room, '\0', file) : -1;
+    const int     why    = errno;
+    const bool    ended  = feof(file) != 0;
+    status               = ferror(file) != 0 ? DIG_EIO : length < 0 && !ended ? DIG_ENOMEM : DIG_OK;
+    (void)fclose(file);
     if (status != DIG_OK) {
+        free(all);
         return dig_error_set(error, status, "%s: %s", path,
                              status == DIG_EIO ? strerror(why) : dig_status_str(status));
     }
-
-    const char *const nul = memchr(all, '\0', used);
-    if (nul != NULL) {
-        const int line = dig_text_line(all, (size_t)(nul - all));
+    if (!ended) {
+        const int line = dig_text_line(all, (size_t)length - 1);
         free(all);
         return dig_error_set(error, DIG_EINVAL, "%s:%d: a NUL byte, expected a text file", path,
                              line);
     }
     *text = all;
-    *size = used;
+    *size = length > 0 ? (size_t)length : 0;
     return DIG_OK;
 }
 
