@@ -121,6 +121,7 @@ static enum dig_status load(const struct dig_rig_options *const options,
 static void describe(const struct dig_machine *const machine, const double scene_tooth_m,
                      const bool tooth_known, const struct dig_rig_track *const track)
 {
+    char text[200];
     (void)fprintf(
         stderr,
         "digrig: %s, lambda %.2f, %.1f s; pin starts at X %.2f m, Z %.2f m; blended within "
@@ -129,7 +130,7 @@ static void describe(const struct dig_machine *const machine, const double scene
         machine->name, machine->link[DIG_JOINT_BUCKET].length_m / scene_tooth_m,
         (double)(track->rows - 1) * track->step_s, track->placement.X_m, track->placement.Z_m,
         1e3 * track->blend_off_m, 57.29578 * track->blend_off_rad, 100.0 * track->nearest.share,
-        track->nearest_text);
+        dig_rig_margin_text(&track->nearest, sizeof text, text));
     if (!tooth_known) {
         (void)fprintf(stderr,
                       "digrig: taken for digs of the rig's bucket, %.3f m from pin to tooth; "
@@ -141,9 +142,11 @@ static void describe(const struct dig_machine *const machine, const double scene
 static void describe_air(const struct dig_machine *const   machine,
                          const struct dig_rig_track *const track)
 {
+    char text[200];
     (void)fprintf(stderr, "digrig: %s in free air, %.1f s; nearest limit, %.0f %% left: %s\n",
                   machine->name, (double)(track->rows - 1) * track->step_s,
-                  100.0 * track->nearest.share, track->nearest_text);
+                  100.0 * track->nearest.share,
+                  dig_rig_margin_text(&track->nearest, sizeof text, text));
 }
 
 static int work(const struct dig_rig_options *const options)

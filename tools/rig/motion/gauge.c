@@ -1,7 +1,6 @@
 #include "tools/rig/motion/gauge.h"
 
 #include <math.h>
-#include <stdio.h>
 
 static const double step_m = 1e-5; // and radians
 
@@ -77,27 +76,4 @@ struct dig_rig_motion dig_rig_gauge_motion(const struct dig_machine *const machi
         motion.turn_radps2[DIG_JOINT_BUCKET] += per_s2 * pose[k].phi_rad;
     }
     return motion;
-}
-
-double dig_rig_gauge_share(const struct dig_force_sensor *const sensor,
-                           const struct dig_rig_load *const load, const size_t size, char text[])
-{
-    const struct {
-        const char *name, *unit;
-        double      value, limit;
-    } axis[] = {
-        { "Fx", "N", load->Fx_N, sensor->limit_N },
-        { "Fz", "N", load->Fz_N, sensor->limit_N },
-        { "My", "Nm", load->My_Nm, sensor->limit_Nm },
-    };
-    double least = INFINITY;
-    for (size_t i = 0; i < sizeof axis / sizeof axis[0]; i++) {
-        const double share = 1.0 - fabs(axis[i].value) / axis[i].limit;
-        if (!(share >= least)) {
-            least = share;
-            (void)snprintf(text, size, "force sensor: %s of %.3g %s, limit %g %s", axis[i].name,
-                           axis[i].value, axis[i].unit, axis[i].limit, axis[i].unit);
-        }
-    }
-    return least;
 }

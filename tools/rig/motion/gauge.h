@@ -13,8 +13,6 @@
 #include "core/machine.h"
 #include "tools/rig/motion/work.h"
 
-#include <stddef.h>
-
 /// In the sensor's own frame (core/machine.h).
 struct dig_rig_load {
     double Fx_N, Fz_N, My_Nm;
@@ -30,10 +28,5 @@ struct dig_rig_load dig_rig_gauge_read(const struct dig_machine    *machine,
 /// How a bucket moves that is at these poses, span_s apart: second differences.
 struct dig_rig_motion dig_rig_gauge_motion(const struct dig_machine *machine,
                                            const struct dig_rig_pose pose[3], double span_s);
-
-/// What is left of the sensor's range, 1 (all) to 0 (at its limit), negative beyond. The text names
-/// what came nearest, its value and its limit.
-double dig_rig_gauge_share(const struct dig_force_sensor *sensor, const struct dig_rig_load *load,
-                           size_t size, char text[]);
 
 #endif // DIG_TOOLS_RIG_MOTION_GAUGE_H

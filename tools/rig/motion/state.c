@@ -156,6 +156,29 @@ look_at_ground(const struct dig_machine *const machine, const struct dig_rig_joi
                           });
 }
 
+static void take_load_margins(const struct dig_force_sensor *const sensor,
+                              const struct dig_rig_load *const     load,
+                              struct dig_rig_margin *const         nearest)
+{
+    const struct {
+        const char *name;
+        double      value, limit;
+    } axis[] = {
+        { "Fx", load->Fx_N, sensor->limit_N },
+        { "Fz", load->Fz_N, sensor->limit_N },
+        { "My", load->My_Nm, sensor->limit_Nm },
+    };
+    for (size_t i = 0; i < sizeof axis / sizeof axis[0]; i++) {
+        take_smaller(nearest, (struct dig_rig_margin){
+                                  .share = 1.0 - fabs(axis[i].value) / axis[i].limit,
+                                  .limit = DIG_RIG_LIMIT_SENSOR,
+                                  .value = axis[i].value,
+                                  .bound = axis[i].limit,
+                                  .end   = axis[i].name,
+                              });
+    }
+}
+
 enum dig_status dig_rig_state_solve(const struct dig_machine *const    machine,
                                     const struct dig_rig_pose *const   pose,
                                     const struct dig_rig_motion *const motion,
@@ -165,7 +188,13 @@ enum dig_status dig_rig_state_solve(const struct dig_machine *const    machine,
     assert(machine != NULL && state != NULL);
 
     struct dig_rig_state result = { .nearest = { .share = INFINITY } };
-    enum dig_status      status = dig_rig_inverse(machine, pose, &result.joints);
+    if (machine->sensor.fitted) {
+        result.load = dig_rig_gauge_read(machine, pose, motion, soil);
+        take_load_margins(&machine->sensor, &result.load, &result.nearest);
+        *state = result;
+        return DIG_OK;
+    }
+    enum dig_status status = dig_rig_inverse(machine, pose, &result.joints);
     for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
         status =
             take_linkage_margins(machine, (enum dig_joint)j, result.joints.rad[j], &result.nearest);
@@ -190,6 +219,8 @@ const char *dig_rig_margin_text(const struct dig_rig_margin *const margin, const
                                 char text[])
 {
     const char *const joint = dig_joint_name(margin->joint);
+    const char *const unit =
+        margin->limit == DIG_RIG_LIMIT_SENSOR && margin->end[0] == 'M' ? "Nm" : "N";
     switch (margin->limit) {
     case DIG_RIG_LIMIT_JOINT:
         (void)snprintf(text, size, "%s joint: %.1f deg, limit %.1f deg", joint,
@@ -215,6 +246,10 @@ const char *dig_rig_margin_text(const struct dig_rig_margin *const margin, const
         (void)snprintf(text, size,
                        "machine tipped over its %s edge: %.1f kNm, its weight holds %.1f kNm",
                        margin->end, 1e-3 * margin->value, 1e-3 * margin->bound);
+        break;
+    case DIG_RIG_LIMIT_SENSOR:
+        (void)snprintf(text, size, "force sensor: %s of %.3g %s, limit %g %s", margin->end,
+                       margin->value, unit, margin->bound, unit);
         break;
     }
     return text;

@@ -5,7 +5,7 @@
 #define DIG_TOOLS_RIG_MOTION_STATE_H
 
 #include "core/machine.h"
-#include "tools/rig/motion/work.h"
+#include "tools/rig/motion/gauge.h"
 
 #include <stddef.h>
 
@@ -16,7 +16,8 @@ enum dig_rig_limit {
     DIG_RIG_LIMIT_LEVER,  // cylinder without leverage
     DIG_RIG_LIMIT_RELIEF, // pressure at its relief valve
     DIG_RIG_LIMIT_LIFT,   // soil pushes up more than everything weighs
-    DIG_RIG_LIMIT_TIP     // the machine turns over an edge of its tracks
+    DIG_RIG_LIMIT_TIP,    // the machine turns over an edge of its tracks
+    DIG_RIG_LIMIT_SENSOR  // load on a force sensor
 };
 
 /// The nearest limit. share is what is left of it, 1 (all) to 0 (at it), negative beyond.
@@ -26,13 +27,14 @@ struct dig_rig_margin {
     enum dig_joint     joint; // of JOINT, STROKE, LEVER, RELIEF
     double             value; // what was reached …
     double             bound; // … and what is allowed, in the limit's unit
-    const char        *end;   // "head", "rod"; "front", "rear"
+    const char        *end;   // "head", "rod"; "front", "rear"; "Fx", "Fz", "My"
 };
 
 struct dig_rig_state {
     struct dig_rig_joints    joints;
     struct dig_rig_pressures pressures;
-    struct dig_rig_margin    nearest;    // of all limits
+    struct dig_rig_load      load;    // of a machine with a force sensor, which has nothing above
+    struct dig_rig_margin    nearest; // of all limits
     struct dig_rig_margin    mechanical; // of joints, strokes and levers only
 };
 
@@ -40,9 +42,9 @@ struct dig_rig_state {
 /// reach; a limit that is exceeded is no failure here, its share is negative.
 ///
 /// Shares: joint and stroke, distance to the nearer end over the range; lever, |dL/dq| over its
-/// mean (stroke / range) less a tenth; relief, 1 - p / relief; lift, vertical reaction of the
-/// ground over weight; tip, moment that still holds the machine about the edge over what it is
-/// without the front.
+/// mean (stroke / range) less a tenth; relief, 1 - p / relief, and a sensor's alike; lift, vertical
+/// reaction of the ground over weight; tip, moment that still holds the machine about the edge over
+/// what it is without the front.
 DIG_MUST_CHECK enum dig_status dig_rig_state_solve(const struct dig_machine    *machine,
                                                    const struct dig_rig_pose   *pose,
                                                    const struct dig_rig_motion *motion,

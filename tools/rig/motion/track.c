@@ -54,23 +54,32 @@ static bool moves(const struct dig_rig_track_options *const options,
     return !options->quasi_static && i >= reach && i + reach < path->frames;
 }
 
-// Accelerations of the links at frame i: second differences of where they are.
-static enum dig_status move_links(const struct dig_machine *const  machine,
-                                  const struct dig_rig_path *const path, const size_t i,
-                                  const struct dig_rig_placement *const placement,
-                                  struct dig_rig_motion *const          motion)
+// Accelerations of the links at frame i, or of a bucket that a force sensor carries: second
+// differences of where they are.
+static enum dig_status move(const struct dig_machine *const  machine,
+                            const struct dig_rig_path *const path, const size_t i,
+                            const struct dig_rig_placement *const placement,
+                            struct dig_rig_motion *const          motion)
 {
     struct dig_rig_motion result = { .turn_radps2 = { 0.0 } };
+    const double          span_s = (double)reach * DIG_RIG_STEP_s;
     const size_t          at[3]  = { i - reach, i, i + reach };
+    struct dig_rig_pose   pose[3];
     struct dig_rig_joints joints[3];
+    enum dig_status       status = DIG_OK;
     for (int k = 0; k < 3; k++) {
-        const struct dig_rig_pose pose   = placed(path, at[k], placement);
-        const enum dig_status     status = dig_rig_inverse(machine, &pose, &joints[k]);
-        if (status != DIG_OK) {
-            return status;
-        }
+        pose[k] = placed(path, at[k], placement);
     }
-    const double        span_s   = (double)reach * DIG_RIG_STEP_s;
+    if (machine->sensor.fitted) {
+        *motion = dig_rig_gauge_motion(machine, pose, span_s);
+        return DIG_OK;
+    }
+    for (int k = 0; k < 3 && status == DIG_OK; k++) {
+        status = dig_rig_inverse(machine, &pose[k], &joints[k]);
+    }
+    if (status != DIG_OK) {
+        return status;
+    }
     const double        per_s2   = 1.0 / (span_s * span_s);
     static const double share[3] = { 1.0, -2.0, 1.0 };
     for (int k = 0; k < 3; k++) {
@@ -85,46 +94,6 @@ static enum dig_status move_links(const struct dig_machine *const  machine,
     return DIG_OK;
 }
 
-// The bucket's own motion at frame i of a machine with a force sensor.
-static struct dig_rig_motion move_bucket(const struct dig_machine *const  machine,
-                                         const struct dig_rig_path *const path, const size_t i)
-{
-    const struct dig_rig_pose pose[3] = { path->frame[i - reach].pose, path->frame[i].pose,
-                                          path->frame[i + reach].pose };
-    return dig_rig_gauge_motion(machine, pose, (double)reach * DIG_RIG_STEP_s);
-}
-
-static enum dig_status fill_sensed(const struct dig_machine *const           machine,
-                                   const struct dig_rig_track_options *const options,
-                                   const struct dig_rig_path *const path, const size_t every,
-                                   struct dig_rig_track *const track, struct dig_error *const error)
-{
-    double worst_s = 0.0;
-    for (size_t r = 0; r < track->rows; r++) {
-        const size_t          i      = r * every;
-        struct dig_rig_motion motion = { .turn_radps2 = { 0.0 } };
-        if (moves(options, path, i)) {
-            motion = move_bucket(machine, path, i);
-        }
-        const struct dig_rig_pose pose = placed(path, i, &track->placement);
-        const struct dig_rig_load load =
-            dig_rig_gauge_read(machine, &pose, &motion, &path->frame[i].soil);
-        char         text[sizeof track->nearest_text];
-        const double share = dig_rig_gauge_share(&machine->sensor, &load, sizeof text, text);
-        if (!(share >= track->nearest.share)) {
-            track->nearest.share = share;
-            worst_s              = (double)i * DIG_RIG_STEP_s;
-            memcpy(track->nearest_text, text, sizeof text);
-        }
-        track->row[r] =
-            (struct dig_rig_row){ .pose = pose, .soil = path->frame[i].soil, .load = load };
-    }
-    return track->nearest.share > 0.0
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL, "%s cannot do this dig: %s (at %.2f s)",
-                               machine->name, track->nearest_text, worst_s);
-}
-
 static enum dig_status refuse(const struct dig_machine *const    machine,
                               const struct dig_rig_margin *const margin, const double at_s,
                               struct dig_error *const error)
@@ -136,10 +105,10 @@ static enum dig_status refuse(const struct dig_machine *const    machine,
                          dig_rig_margin_text(margin, sizeof text, text), at_s);
 }
 
-static enum dig_status fill_driven(const struct dig_machine *const           machine,
-                                   const struct dig_rig_track_options *const options,
-                                   const struct dig_rig_path *const path, const size_t every,
-                                   struct dig_rig_track *const track, struct dig_error *const error)
+static enum dig_status fill(const struct dig_machine *const           machine,
+                            const struct dig_rig_track_options *const options,
+                            const struct dig_rig_path *const path, const size_t every,
+                            struct dig_rig_track *const track, struct dig_error *const error)
 {
     double worst_s = 0.0;
     for (size_t r = 0; r < track->rows; r++) {
@@ -150,7 +119,7 @@ static enum dig_status fill_driven(const struct dig_machine *const           mac
         struct dig_rig_state      state;
         enum dig_status           status = DIG_OK;
         if (moves(options, path, i)) {
-            status = move_links(machine, path, i, &track->placement, &motion);
+            status = move(machine, path, i, &track->placement, &motion);
         }
         if (status == DIG_OK) {
             status = dig_rig_state_solve(machine, &pose, &motion, &path->frame[i].soil, &state);
@@ -171,9 +140,9 @@ static enum dig_status fill_driven(const struct dig_machine *const           mac
             .soil      = path->frame[i].soil,
             .joints    = state.joints,
             .pressures = state.pressures,
+            .load      = state.load,
         };
     }
-    (void)dig_rig_margin_text(&track->nearest, sizeof track->nearest_text, track->nearest_text);
     return track->nearest.share > 0.0 ? DIG_OK : refuse(machine, &track->nearest, worst_s, error);
 }
 
@@ -200,9 +169,7 @@ static enum dig_status lay(const struct dig_machine *const           machine,
     if (status == DIG_OK) {
         result.row = malloc(result.rows * sizeof result.row[0]);
         status     = result.row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
-                     : machine->sensor.fitted
-                         ? fill_sensed(machine, options, path, every, &result, error)
-                         : fill_driven(machine, options, path, every, &result, error);
+                                        : fill(machine, options, path, every, &result, error);
     }
     if (status != DIG_OK) {
         free(result.row);

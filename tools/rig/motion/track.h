@@ -29,7 +29,6 @@ struct dig_rig_track {
     struct dig_rig_row      *row;
     struct dig_rig_placement placement;
     struct dig_rig_margin    nearest; // the limit that came nearest over all rows
-    char                     nearest_text[200];
     double                   blend_off_m, blend_off_rad;
 };
 
