@@ -1,5 +1,6 @@
 #include "core/text.h"
 #include "core/units.h"
+#include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"
 #include "estimator/predict/peak_energy.h"
 #include "files/identity_json.h"
@@ -17,14 +18,6 @@
 
 #define GRID_s 0.005
 
-static double at(const float curve[DIG_CURVE_POINTS], const double progress)
-{
-    const double place = fmin(fmax(progress, 0.0), 1.0) * (DIG_CURVE_POINTS - 1);
-    const size_t i     = (size_t)fmin(floor(place), DIG_CURVE_POINTS - 2);
-    const double f     = place - (double)i;
-    return (1.0 - f) * (double)curve[i] + f * (double)curve[i + 1];
-}
-
 // The predicted curve as a force recording: what another program may read like a measured one.
 static enum dig_status write_curve(const char *const path, const struct dig_curve_set *const set,
                                    const struct dig_trajectory *const t,
@@ -39,18 +32,20 @@ static enum dig_status write_curve(const char *const path, const struct dig_curv
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     for (size_t i = 0; i < rows; i++) {
-        const double          t_s      = (double)i * GRID_s;
-        const double          progress = dig_trajectory_path_m(t, set->tooth_m, t_s) / whole_m;
-        const struct dig_pose pose     = dig_trajectory_pose(t, t_s);
-        r.row[i]                       = (struct dig_force_row){ .t_s       = t_s,
-                                                                 .pin_x_m   = pose.x_m,
-                                                                 .pin_z_m   = pose.z_m,
-                                                                 .theta_deg = pose.theta_rad * 180.0 / acos(-1.0),
-                                                                 .Fx_N      = at(curve->mean[DIG_CHANNEL_FX_N], progress),
-                                                                 .Fz_N      = at(curve->mean[DIG_CHANNEL_FZ_N], progress),
-                                                                 .My_Nm = at(curve->mean[DIG_CHANNEL_MY_Nm], progress),
-                                                                 .carried_kg =
-                                                                     at(curve->mean[DIG_CHANNEL_CARRIED_kg], progress) };
+        const double t_s = (double)i * GRID_s;
+        const double place =
+            dig_trajectory_path_m(t, set->tooth_m, t_s) / whole_m * (DIG_CURVE_POINTS - 1);
+        const struct dig_pose pose = dig_trajectory_pose(t, t_s);
+        r.row[i] =
+            (struct dig_force_row){ .t_s       = t_s,
+                                    .pin_x_m   = pose.x_m,
+                                    .pin_z_m   = pose.z_m,
+                                    .theta_deg = pose.theta_rad * 180.0 / acos(-1.0),
+                                    .Fx_N      = dig_curve_at(curve->mean[DIG_CHANNEL_FX_N], place),
+                                    .Fz_N      = dig_curve_at(curve->mean[DIG_CHANNEL_FZ_N], place),
+                                    .My_Nm = dig_curve_at(curve->mean[DIG_CHANNEL_MY_Nm], place),
+                                    .carried_kg =
+                                        dig_curve_at(curve->mean[DIG_CHANNEL_CARRIED_kg], place) };
     }
     const enum dig_status status = dig_recording_write(path, &r, error);
     dig_recording_finish(&r);
