@@ -5,7 +5,7 @@
 #include "closed_loop/report/design_report.h"
 #include "core/chance.h"
 #include "tests/made_table.h"
-#include "tests/scratch.h"
+#include "tests/written.h"
 
 struct bench {
     struct dig_curve_set        *set;
@@ -160,14 +160,11 @@ TEST(the_reports_name_the_recommended_dig)
     struct bench b = make(0.1, 0.0);
     flatten(&b, MADE_SIMPLE_A);
     const struct dig_design d    = run(&b, 100);
-    const char *const       path = scratch_path("design.txt");
-    FILE *const             file = fopen(path, "w");
-    assert_non_null(file);
-    dig_design_text(&d, b.set, file);
-    dig_design_json(&d, b.set, file);
-    assert_int_equal(fclose(file), 0);
-    size_t      size = 0;
-    char *const text = scratch_read(path, &size);
+    char                   *text = NULL;
+    FILE *const             to   = written_begin(&text);
+    dig_design_text(&d, b.set, to);
+    dig_design_json(&d, b.set, to);
+    written_end(to);
     assert_contains(text, "recommended: simpleB");
     assert_contains(text, "it identifies better");
     assert_contains(text, "{\"recommended\": \"simpleB\", \"reference\": \"simpleA\", "
@@ -177,5 +174,3 @@ TEST(the_reports_name_the_recommended_dig)
     free(text);
     drop(&b);
 }
-
-TESTS_WITH(scratch_setup, scratch_teardown)

@@ -6,6 +6,7 @@
 #include "core/units.h"
 #include "files/yaml/yaml_tree.h"
 #include "tests/read.h"
+#include "tests/written.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -74,11 +75,9 @@ static int drop(void **state)
 static char *written(void (*const put)(const struct dig_check_subject *, FILE *))
 {
     char       *text = NULL;
-    size_t      size = 0;
-    FILE *const to   = open_memstream(&text, &size);
-    assert_non_null(to);
+    FILE *const to   = written_begin(&text);
     put(&subject, to);
-    assert_int_equal(fclose(to), 0);
+    written_end(to);
     return text;
 }
 
@@ -189,11 +188,7 @@ TEST(json_is_read_back_and_holds_every_line)
     const yaml_node_t *const node  = dig_yaml_find(&document, "verdict", &found);
     assert_string_equal(dig_yaml_text_of(node), "wrong");
     yaml_document_delete(&document);
-    size_t lines = 0;
-    for (const char *c = text; (c = strstr(c, "\"question\": \"")) != NULL; c++) {
-        lines++;
-    }
-    assert_int_equal(lines, check.items);
+    assert_int_equal(count_of(text, "\"question\": \""), check.items);
     assert_non_null(strstr(text, "\"verdict\": \"wrong\""));
     assert_non_null(strstr(text, "\"found_in\": \"arm\""));
     free(text);
@@ -202,20 +197,14 @@ TEST(json_is_read_back_and_holds_every_line)
 TEST(the_page_escapes_texts_names_no_folder_and_has_a_picture_a_joint)
 {
     char            *text  = NULL;
-    size_t           size  = 0;
-    FILE *const      to    = open_memstream(&text, &size);
+    FILE *const      to    = written_begin(&text);
     struct dig_error error = { "" };
-    assert_non_null(to);
     assert_ok(dig_machine_check_html(&subject, to, &error), error);
-    assert_int_equal(fclose(to), 0);
+    written_end(to);
     assert_non_null(strstr(text, "&lt;my&gt;.yaml"));
     assert_null(strstr(text, "somebody"));
     assert_null(strstr(text, "/tmp/x"));
-    size_t figures = 0;
-    for (const char *c = text; (c = strstr(c, "<figure>")) != NULL; c++) {
-        figures++;
-    }
-    assert_int_equal(figures, 2 * DIG_JOINTS);
+    assert_int_equal(count_of(text, "<figure>"), 2 * DIG_JOINTS);
     assert_non_null(strstr(text, "push of the rod, kN"));
     free(text);
 }
