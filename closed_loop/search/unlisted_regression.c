@@ -165,27 +165,18 @@ struct told {
     struct states mean[DIG_TRAJECTORY_MAX];
 };
 
-static void tell_nominal(const struct dig_whitened_digs *const batch, struct told *const told)
+static void tell(const struct dig_whitened_digs *const batch, const bool each,
+                 struct told *const told)
 {
-    for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_measured nominal = { .trajectory = (int)batch->group[g].trajectory,
-                                              .pass       = 1,
-                                              .pace       = 1.0 };
-        dig_basis_along(batch->soil->surface->set, &nominal, told->mean[g].value);
-    }
-}
-
-static void tell_digs(const struct dig_whitened_digs *const batch, struct told *const told)
-{
-    const bool paced = dig_basis_paces_differ(batch);
+    const bool paced = each && dig_basis_paces_differ(batch);
     memset(told->mean, 0, sizeof told->mean);
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
         const size_t                     g   = batch->dig[i].group;
         const struct dig_measured        dug = { .trajectory  = dig->trajectory,
-                                                 .pass        = dig->pass,
+                                                 .pass        = each ? dig->pass : 1,
                                                  .pace        = paced ? dig->pace : 1.0,
-                                                 .pitch_known = dig->pitch_known,
+                                                 .pitch_known = each && dig->pitch_known,
                                                  .pitch_rad   = dig->pitch_rad };
         dig_basis_along(batch->soil->surface->set, &dug, told->dig[i].value);
         for (size_t f = 0; f < DIG_BASES; f++) {
@@ -240,11 +231,7 @@ struct dig_regressed dig_regress(const struct dig_whitened_digs *const batch,
     const size_t      by_digs    = dig_basis_told(batch, candidate);
     const size_t      candidates = each ? by_digs : COMMON; // which are the first
     double            amplitude[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
-    if (each) {
-        tell_digs(batch, &told);
-    } else {
-        tell_nominal(batch, &told);
-    }
+    tell(batch, each, &told);
     for (size_t g = 0; g < batch->groups; g++) {
         fill_mean(batch, plain, g, &told.mean[g], amplitude[g], &r);
     }
