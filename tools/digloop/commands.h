@@ -68,8 +68,8 @@ DIG_MUST_CHECK enum dig_status digloop_save_model(const struct digloop_job *job,
                                                   const struct dig_trace   *trace,
                                                   struct dig_error         *error);
 
-/// The table of effects asked for, or the one beside the table if there is one; path names it, ""
-/// when there is none: then it says so on standard error and leaves *effects. Free with
+/// The table of effects asked for, or the one beside the table, which path names, too, when there
+/// is none: then it says so on standard error and leaves *effects. Free with
 /// dig_entry_set_destroy().
 DIG_MUST_CHECK enum dig_status digloop_load_effects(const struct digloop_job *job,
                                                     char                   path[DIGLOOP_PATH_SIZE],

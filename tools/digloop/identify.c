@@ -13,14 +13,9 @@
 #define EVALUATIONS    400
 #define OUTSIDE_FLOORS 3.0
 
-// Digs of all recordings.
-struct pool {
-    size_t                  digs;
-    struct dig_observation *dig; // [digs]
-};
-
-static enum dig_status add(struct pool *const pool, const struct dig_observed_digs *const more,
-                           struct dig_error *const error)
+static enum dig_status add(struct dig_observed_digs *const       pool,
+                           const struct dig_observed_digs *const more,
+                           struct dig_error *const               error)
 {
     struct dig_observation *const grown =
         realloc(pool->dig, (pool->digs + more->digs) * sizeof *grown);
@@ -34,7 +29,7 @@ static enum dig_status add(struct pool *const pool, const struct dig_observed_di
 }
 
 static enum dig_status collect(const struct digloop_job *const job, const int trajectory,
-                               struct pool *const pool, struct dig_error *const error)
+                               struct dig_observed_digs *const pool, struct dig_error *const error)
 {
     enum dig_status status = DIG_OK;
     for (int i = 0; i < job->options->recordings && status == DIG_OK; i++) {
@@ -60,8 +55,9 @@ static bool is_simple(const struct dig_trajectory *const t)
 
 // Digs along several trajectories are of one ground when each is one that identifies: an actual dig
 // among them would predict itself.
-static enum dig_status check_along(const struct dig_curve_set *const set,
-                                   const struct pool *const pool, struct dig_error *const error)
+static enum dig_status check_along(const struct dig_curve_set *const     set,
+                                   const struct dig_observed_digs *const pool,
+                                   struct dig_error *const               error)
 {
     const int first = pool->dig[0].trajectory;
     bool      same = true, simple = true;
@@ -77,8 +73,9 @@ static enum dig_status check_along(const struct dig_curve_set *const set,
                                "those along one");
 }
 
-static enum dig_status observe_all(const struct digloop_job *const job, struct pool *const pool,
-                                   struct dig_error *const error)
+static enum dig_status observe_all(const struct digloop_job *const job,
+                                   struct dig_observed_digs *const pool,
+                                   struct dig_error *const         error)
 {
     int             trajectory = -1;
     enum dig_status status     = DIG_OK;
@@ -98,8 +95,8 @@ static enum dig_status observe_all(const struct digloop_job *const job, struct p
 }
 
 static enum dig_status match_all(const char *const table, const struct dig_curve_set *const set,
-                                 const struct pool *const pool, struct dig_match *const match,
-                                 struct dig_error *const error)
+                                 const struct dig_observed_digs *const pool,
+                                 struct dig_match *const match, struct dig_error *const error)
 {
     enum dig_status status = dig_match_nearest(set, pool->digs, pool->dig, OUTSIDE_FLOORS, match);
     if (status == DIG_ENOMATCH) {
@@ -116,8 +113,9 @@ static enum dig_status match_all(const char *const table, const struct dig_curve
 }
 
 // "3 digs (simpleA): moment and forces"; and why not the forces, where some have them.
-static void show_measured(const struct dig_curve_set *const set, const struct pool *const pool,
-                          const bool forces, FILE *const to)
+static void show_measured(const struct dig_curve_set *const     set,
+                          const struct dig_observed_digs *const pool, const bool forces,
+                          FILE *const to)
 {
     (void)fprintf(to, "  %zu dig%s (", pool->digs, pool->digs == 1 ? "" : "s");
     for (size_t t = 0, named = 0; t < set->trajectories; t++) {
@@ -147,7 +145,7 @@ static bool is_shown_alike(const struct dig_approach *const a, const struct dig_
 
 // "dig 1 at depth 1.080, attack 2.00 deg, …", each dig of a table that knows such; and what it was
 // matched at, where the table does not go so far.
-static void show_approaches(const struct pool *const pool, FILE *const to)
+static void show_approaches(const struct dig_observed_digs *const pool, FILE *const to)
 {
     for (size_t d = 0; d < pool->digs; d++) {
         const struct dig_observation *const dig     = &pool->dig[d];
@@ -217,10 +215,10 @@ static struct dig_identity identity_of(const struct dig_curve_set *const   set,
 
 enum dig_status digloop_identify(const struct digloop_job *const job, struct dig_error *const error)
 {
-    struct pool           pool  = { .digs = 0 };
-    struct digloop_as_dug table = { .set = NULL };
-    struct dig_match      match;
-    enum dig_status       status = observe_all(job, &pool, error);
+    struct dig_observed_digs pool  = { .digs = 0 };
+    struct digloop_as_dug    table = { .set = NULL };
+    struct dig_match         match;
+    enum dig_status          status = observe_all(job, &pool, error);
     if (status == DIG_OK) {
         status = digloop_as_dug_make(job->set, pool.digs, pool.dig, &table, error);
     }
@@ -240,6 +238,6 @@ enum dig_status digloop_identify(const struct digloop_job *const job, struct dig
             show_family(&match, stdout);
         }
     }
-    free(pool.dig);
+    dig_observed_digs_finish(&pool);
     return status;
 }

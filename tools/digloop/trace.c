@@ -51,7 +51,6 @@ enum dig_status digloop_load_effects(const struct digloop_job *const job,
         name_effects(job->options->table, path);
         if (stat(path, &found) != 0) {
             say_without_beds(path);
-            path[0] = '\0';
             return DIG_OK;
         }
     }
@@ -122,13 +121,10 @@ enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_er
         }
     }
     if (status == DIG_OK) {
-        char beside[DIGLOOP_PATH_SIZE];
-        name_effects(job->options->table, beside);
-        status = digloop_next_table(job, path[0] != '\0' ? path : beside, campaign.digs,
-                                    campaign.measured, trace, error);
+        status = digloop_next_table(job, path, campaign.digs, campaign.measured, trace, error);
     }
     if (status == DIG_OK) {
-        status = write_results(job, path, &campaign, trace, error);
+        status = write_results(job, effects != NULL ? path : "", &campaign, trace, error);
     }
     if (trace != NULL) {
         dig_trace_finish(trace);
