@@ -11,14 +11,23 @@
 #define ACTUAL "tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv"
 #define STIFF  "tests/data/reference/mu0.9_mur0.9_rho2500__actual.csv"
 
+static struct dig_rig_track build(const struct dig_machine *const           machine,
+                                  const struct dig_rig_track_options *const options,
+                                  const size_t recordings, const struct dig_recording *const from)
+{
+    struct dig_rig_track track;
+    struct dig_error     error = { "" };
+    assert_int_equal(dig_rig_track_build(machine, options, recordings, from, &track, &error),
+                     DIG_OK);
+    return track;
+}
+
 TEST(simple_then_actual_fit_the_trench_machine_below_relief)
 {
     const struct dig_machine           machine = read_machine("zx200_trench");
     const struct dig_rig_track_options options = dig_rig_track_options_default();
     struct dig_recording recording[2]          = { read_recording(SIMPLE), read_recording(ACTUAL) };
-    struct dig_rig_track track;
-    struct dig_error     error = { "" };
-    assert_int_equal(dig_rig_track_build(&machine, &options, 2, recording, &track, &error), DIG_OK);
+    struct dig_rig_track track                 = build(&machine, &options, 2, recording);
 
     assert_true(track.nearest.share > 0.1);
     double most_Pa = 0.0;
@@ -44,10 +53,7 @@ TEST(stiffest_reference_dig_fits_the_trench_machine)
     const struct dig_machine           machine   = read_machine("zx200_trench");
     const struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording               recording = read_recording(STIFF);
-    struct dig_rig_track               track;
-    struct dig_error                   error = { "" };
-    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &track, &error),
-                     DIG_OK);
+    struct dig_rig_track               track     = build(&machine, &options, 1, &recording);
     dig_rig_track_finish(&track);
     dig_recording_finish(&recording);
 }
@@ -58,13 +64,10 @@ TEST(soil_of_the_track_is_the_recording_s_at_scale)
     const struct dig_machine     machine   = read_machine("zx200_trench");
     struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording         recording = read_recording(SIMPLE);
-    struct dig_rig_track         track;
-    struct dig_error             error = { "" };
-    options.air                        = false;
-    options.blend                      = false;
-    options.rate_Hz                    = 1000.0;
-    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &track, &error),
-                     DIG_OK);
+    options.air                            = false;
+    options.blend                          = false;
+    options.rate_Hz                        = 1000.0;
+    struct dig_rig_track track             = build(&machine, &options, 1, &recording);
     for (size_t r = 100; r < 500; r += 37) {
         const struct dig_force_row *const row = &recording.row[r];
         const double                      t_s = sqrt(10.0) * (row->t_s - recording.row[0].t_s);
@@ -86,11 +89,8 @@ TEST(cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links)
     const struct dig_machine     machine   = read_machine("zx200_trench");
     struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording         recording = read_recording(SIMPLE);
-    struct dig_rig_track         track;
-    struct dig_error             error = { "" };
-    options.rate_Hz                    = 1000.0;
-    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &track, &error),
-                     DIG_OK);
+    options.rate_Hz                        = 1000.0;
+    struct dig_rig_track track             = build(&machine, &options, 1, &recording);
 
     double work_J  = 0.0; // of cylinders and soil
     double turned  = 0.0; // all work without its sign, as a measure
@@ -153,14 +153,9 @@ TEST(inertia_is_a_small_part_of_a_slow_dig)
     const struct dig_machine     machine   = read_machine("zx200_trench");
     struct dig_rig_track_options options   = dig_rig_track_options_default();
     struct dig_recording         recording = read_recording(ACTUAL);
-    struct dig_rig_track         moving;
-    struct dig_rig_track         still;
-    struct dig_error             error = { "" };
-    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &moving, &error),
-                     DIG_OK);
-    options.quasi_static = true;
-    assert_int_equal(dig_rig_track_build(&machine, &options, 1, &recording, &still, &error),
-                     DIG_OK);
+    struct dig_rig_track         moving    = build(&machine, &options, 1, &recording);
+    options.quasi_static                   = true;
+    struct dig_rig_track still             = build(&machine, &options, 1, &recording);
     assert_int_equal(moving.rows, still.rows);
     double most_Pa = 0.0;
     for (size_t i = 0; i < moving.rows; i++) {
