@@ -18,14 +18,14 @@ static double derived_s(const struct dig_scene *const scene, const struct dig_gr
     return dig_grain_types_time_step_s(&free_scene, gravel, types);
 }
 
-static enum dig_status check_drift(const struct dig_scene *const  scene,
-                                   const struct dig_gravel *const gravel,
-                                   struct dig_ode_scene *const ode, const struct dig_bed *const bed,
-                                   const double check_s, struct dig_error *const error)
+static enum dig_status check_bed(const struct dig_scene *const  scene,
+                                 const struct dig_gravel *const gravel,
+                                 const struct dig_bed *const bed, const double check_s,
+                                 struct dig_error *const error)
 {
     struct dig_grain_types types;
     struct dig_world       world;
-    enum dig_status status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &world, error);
+    enum dig_status        status = dig_setup_world(scene, gravel, bed, 0.0, &types, &world, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -48,19 +48,6 @@ static enum dig_status check_drift(const struct dig_scene *const  scene,
                                "(or may_tremble: true)",
                                step_s, safe_s)
                : DIG_OK;
-}
-
-static enum dig_status check_bed(const struct dig_scene *const  scene,
-                                 const struct dig_gravel *const gravel,
-                                 const struct dig_bed *const bed, const double check_s,
-                                 struct dig_error *const error)
-{
-    struct dig_ode_scene *const ode    = dig_ode_scene_create(scene);
-    const enum dig_status       status = ode == NULL
-                                             ? dig_setup_explain(DIG_ENOMEM, error)
-                                             : check_drift(scene, gravel, ode, bed, check_s, error);
-    dig_ode_scene_destroy(ode);
-    return status;
 }
 
 enum dig_status dig_bed_check(const struct dig_scene *const  scene,

@@ -21,7 +21,6 @@ struct run {
     const struct dig_trajectory *trajectory;
     const char                  *vtk_dir;
     const struct dig_progress   *progress;
-    struct dig_ode_scene        *ode;
     struct dig_world             world;
     struct dig_tool              tool;
 };
@@ -47,7 +46,7 @@ static enum dig_status record_window(struct run *const d, const size_t first, co
     struct dig_wrench sum    = { 0 };
     enum dig_status   status = dig_world_take_wrench(&d->world, &sum);
     for (size_t s = 1; s <= window && status == DIG_OK; s++) {
-        dig_setup_place_tool(d->trajectory, (double)(first + s) * dt_s, dt_s, d->ode, &d->tool);
+        dig_setup_place_tool(d->trajectory, (double)(first + s) * dt_s, &d->world, &d->tool);
         status = dig_world_step(&d->world);
     }
     status = status == DIG_OK ? dig_world_take_wrench(&d->world, &sum) : status;
@@ -73,7 +72,7 @@ static enum dig_status run(struct run *const d, struct dig_recording *const reco
         return DIG_ENOMEM;
     }
     // The forces before the first step belong to no row: they give the half kick.
-    dig_setup_place_tool(d->trajectory, 0.0, d->world.dt_s, d->ode, &d->tool);
+    dig_setup_place_tool(d->trajectory, 0.0, &d->world, &d->tool);
     enum dig_status status = dig_world_step(&d->world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
@@ -120,8 +119,7 @@ static enum dig_status run_unrecorded(struct run *const d)
     dig_world_mark_stale(&d->world);
     enum dig_status status = DIG_OK;
     for (size_t s = 0; s <= steps && status == DIG_OK; s++) {
-        dig_setup_place_tool(d->trajectory, (double)s * d->world.dt_s, d->world.dt_s, d->ode,
-                             &d->tool);
+        dig_setup_place_tool(d->trajectory, (double)s * d->world.dt_s, &d->world, &d->tool);
         status = dig_world_step(&d->world);
         if (status == DIG_OK && d->progress != NULL && s % PROGRESS_STEPS == 0 &&
             !d->progress->report(d->progress->context, 0.0, duration_s)) {
@@ -184,23 +182,17 @@ enum dig_status dig_dig_run(const struct dig_stepper *const stepper,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    if (ode == NULL) {
-        return dig_setup_explain(DIG_ENOMEM, error);
-    }
     struct run d = {
         .scene      = scene,
         .trajectory = trajectory,
         .vtk_dir    = vtk_dir,
         .progress   = progress,
-        .ode        = ode,
         .tool       = dig_tool_make(&scene->bucket),
     };
-    struct dig_grain_types types;
-    struct dig_recording   made = { 0 };
-    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &d.world, error);
+    struct dig_recording made = { 0 };
+    status                    = dig_setup_world(scene, gravel, bed, 0.0, NULL, &d.world, error);
     if (status == DIG_OK) {
-        dig_setup_place_tool(trajectory, 0.0, d.world.dt_s, ode, &d.tool);
+        dig_setup_place_tool(trajectory, 0.0, &d.world, &d.tool);
         status = dig_input_checks_outside(&d.world, error);
         status = status == DIG_OK ? dig_input_checks_overlap(&d.world, error) : status;
         status = status == DIG_OK ? dig_input_checks_start(&d.world, &d.tool, error) : status;
@@ -210,7 +202,6 @@ enum dig_status dig_dig_run(const struct dig_stepper *const stepper,
         status = status == DIG_OK ? run_all(&d, &made, error) : status;
         dig_setup_finish(&d.world);
     }
-    dig_ode_scene_destroy(ode);
     if (status != DIG_OK) {
         dig_recording_finish(&made);
         return status;

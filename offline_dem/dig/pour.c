@@ -54,7 +54,6 @@ static void assign_layers(const struct dig_scene *const scene, struct dig_bed *c
 struct pour {
     const struct dig_scene  *scene;
     const struct dig_gravel *gravel;
-    struct dig_ode_scene    *ode;
     struct dig_stepper       stepper;
     struct dig_grain_types   types;
     struct dig_world         world;
@@ -65,7 +64,7 @@ static enum dig_status make_world(struct pour *const p, const struct dig_bed *co
                                   const double fall_mps, struct dig_error *const error)
 {
     enum dig_status status =
-        dig_setup_world(p->scene, p->gravel, p->ode, bed, fall_mps, &p->types, &p->world, error);
+        dig_setup_world(p->scene, p->gravel, bed, fall_mps, &p->types, &p->world, error);
     return status == DIG_OK ? dig_setup_stepper(&p->stepper, &p->world, error) : status;
 }
 
@@ -188,16 +187,11 @@ enum dig_status dig_bed_pour(const struct dig_stepper *const stepper,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    struct pour                 p   = { .scene = scene, .gravel = gravel, .ode = ode };
+    struct pour p = { .scene = scene, .gravel = gravel };
     if (stepper != NULL) {
         p.stepper = *stepper;
     }
-    if (ode == NULL) {
-        status = dig_setup_explain(DIG_ENOMEM, error);
-    } else {
-        status = make_world(&p, &poured, scene->packing.fall_mps, error);
-    }
+    status = make_world(&p, &poured, scene->packing.fall_mps, error);
     dig_bed_finish(&poured);
     if (status == DIG_OK) {
         status = settle_and_level(&p, progress, error);
@@ -208,6 +202,5 @@ enum dig_status dig_bed_pour(const struct dig_stepper *const stepper,
         status                       = status == DIG_OK ? status : dig_setup_explain(status, error);
     }
     dig_setup_finish(&p.world);
-    dig_ode_scene_destroy(ode);
     return status;
 }

@@ -78,19 +78,20 @@ static enum dig_status make_grains(const struct dig_scene *const       scene,
 
 enum dig_status dig_setup_world(const struct dig_scene *const  scene,
                                 const struct dig_gravel *const gravel,
-                                struct dig_ode_scene *const ode, const struct dig_bed *const bed,
-                                const double fall_mps, struct dig_grain_types *const types,
-                                struct dig_world *const world, struct dig_error *const error)
+                                const struct dig_bed *const bed, const double fall_mps,
+                                struct dig_grain_types *const types, struct dig_world *const world,
+                                struct dig_error *const error)
 {
     struct dig_clump_shape shape   = { 0 };
     struct dig_grain_types found   = { 0 };
     struct dig_grains      grains  = { 0 };
     struct dig_bodies     *bodies  = NULL;
     uint8_t *const         type_of = calloc(bed->grains + 1, 1);
+    struct dig_ode_scene  *ode     = dig_ode_scene_create(scene);
     enum dig_status        status  = dig_clump_shape_make(&scene->bed.clump, &shape);
     if (status != DIG_OK) {
         status = dig_error_set(error, status, "bed.clump: no volume, expected some");
-    } else if (type_of == NULL) {
+    } else if (type_of == NULL || ode == NULL) {
         status = dig_setup_explain(DIG_ENOMEM, error);
     } else {
         status = dig_grain_types_find(scene, gravel, bed, &shape, &found, type_of, error);
@@ -112,6 +113,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
     }
     free(type_of);
     if (status != DIG_OK) {
+        dig_ode_scene_destroy(ode);
         return status;
     }
     struct dig_world made = {
@@ -119,6 +121,7 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
         .gravity_mps2 = { 0.0, 0.0, -scene->gravity_mps2 },
         .isa          = dig_kernel_best(),
         .bodies       = bodies,
+        .ode          = ode,
         .period_y_m   = dig_scene_period_m(scene),
     };
     made.walls = dig_ode_scene_walls(ode, made.wall);
@@ -129,7 +132,9 @@ enum dig_status dig_setup_world(const struct dig_scene *const  scene,
             dig_grain_types_between(scene, gravel, 0, DIG_MATERIAL_WALLS);
         dig_bodies_release_rocks(bodies, ode, &walls);
     }
-    *types = found;
+    if (types != NULL) {
+        *types = found;
+    }
     *world = made;
     return DIG_OK;
 }
@@ -157,18 +162,19 @@ void dig_setup_finish(struct dig_world *const world)
     world->bodies = NULL;
     dig_crew_destroy(world->crew);
     world->crew = NULL;
+    dig_ode_scene_destroy(world->ode);
+    world->ode = NULL;
     dig_world_finish(world);
 }
 
 void dig_setup_place_tool(const struct dig_trajectory *const trajectory, const double time_s,
-                          const double dt_s, struct dig_ode_scene *const ode,
-                          struct dig_tool *const tool)
+                          const struct dig_world *const world, struct dig_tool *const tool)
 {
-    const size_t                  at    = dig_trajectory_phase(trajectory, time_s - 0.5 * dt_s);
+    const size_t                  at = dig_trajectory_phase(trajectory, time_s - 0.5 * world->dt_s);
     const struct dig_phase *const phase = &trajectory->phase[at];
-    dig_ode_scene_move(ode, dig_trajectory_pose(trajectory, time_s), phase->vx_mps, phase->vz_mps,
-                       phase->omega_radps);
-    dig_ode_scene_read(ode, tool);
+    dig_ode_scene_move(world->ode, dig_trajectory_pose(trajectory, time_s), phase->vx_mps,
+                       phase->vz_mps, phase->omega_radps);
+    dig_ode_scene_read(world->ode, tool);
 }
 
 struct dig_force_row dig_setup_force_row(const struct dig_trajectory *const trajectory,

@@ -21,26 +21,26 @@ DIG_MUST_CHECK enum dig_status dig_setup_check(const struct dig_scene  *scene,
 DIG_MUST_CHECK enum dig_status dig_setup_check_phases(const struct dig_trajectory *trajectory,
                                                       struct dig_error            *error);
 
-/// A world of this bed with the walls of the ODE scene, without a tool, falling at fall_mps. *types
-/// are its grain types. DIG_EINVAL for an impossible bed (*error says which grain), DIG_ENOMEM;
-/// then *world is untouched. The ODE scene moves the rocks and must outlive the world.
+/// A world of this bed between the scene's walls, without a tool, falling at fall_mps, its rocks
+/// moved by its ODE scene. *types are its grain types, NULL: not wanted. DIG_EINVAL for an
+/// impossible bed (*error says which grain), DIG_ENOMEM; then *world is untouched.
 DIG_MUST_CHECK enum dig_status dig_setup_world(const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel,
-                                               struct dig_ode_scene *ode, const struct dig_bed *bed,
-                                               double fall_mps, struct dig_grain_types *types,
+                                               const struct dig_bed *bed, double fall_mps,
+                                               struct dig_grain_types *types,
                                                struct dig_world *world, struct dig_error *error);
 
 /// Who steps a world that has not made a step. DIG_ENOMEM leaves it with the kernel.
 DIG_MUST_CHECK enum dig_status dig_setup_stepper(const struct dig_stepper *stepper,
                                                  struct dig_world *world, struct dig_error *error);
 
-/// Frees the world, its bodies and its crew.
+/// Frees the world, its bodies, its crew and its ODE scene. A zeroed world is allowed.
 void dig_setup_finish(struct dig_world *world);
 
-/// Moves ODE's bucket along the trajectory to time_s, and reads the tool from there. The velocity
-/// is that of the phase that ends at or after time_s.
-void dig_setup_place_tool(const struct dig_trajectory *trajectory, double time_s, double dt_s,
-                          struct dig_ode_scene *ode, struct dig_tool *tool);
+/// Moves the world's bucket in ODE along the trajectory to time_s, and reads the tool from there.
+/// The velocity is that of the phase that ends at or after time_s.
+void dig_setup_place_tool(const struct dig_trajectory *trajectory, double time_s,
+                          const struct dig_world *world, struct dig_tool *tool);
 
 /// The row of a curve over the steps first + 1 … first + window, with their mean wrench.
 struct dig_force_row dig_setup_force_row(const struct dig_trajectory *trajectory, size_t first,

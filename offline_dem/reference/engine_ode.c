@@ -2,7 +2,6 @@
 
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/reference/ode_bed.h"
-#include "offline_dem/world/ode_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +10,6 @@
 struct run {
     const struct dig_trajectory *trajectory;
     const struct dig_world      *world; // grains as they were at the start
-    struct dig_ode_scene        *ode;
     struct dig_ode_bed          *bed;
     struct dig_tool              tool;
 };
@@ -41,7 +39,7 @@ static enum dig_status check(const struct dig_scene *const scene, const char *co
 static enum dig_status step(struct run *const d, const double time_s,
                             struct dig_wrench *const on_tool)
 {
-    dig_setup_place_tool(d->trajectory, time_s, d->world->dt_s, d->ode, &d->tool);
+    dig_setup_place_tool(d->trajectory, time_s, d->world, &d->tool);
     return dig_ode_bed_step(d->bed, &d->tool, on_tool);
 }
 
@@ -119,19 +117,13 @@ static enum dig_status dig(const struct dig_stepper *const none,
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    if (ode == NULL) {
-        return dig_setup_explain(DIG_ENOMEM, error);
-    }
-    struct dig_grain_types types;
-    struct dig_world       world;
-    struct dig_recording   made = { 0 };
-    status = dig_setup_world(scene, gravel, ode, bed, 0.0, &types, &world, error);
+    struct dig_world     world;
+    struct dig_recording made = { 0 };
+    status                    = dig_setup_world(scene, gravel, bed, 0.0, NULL, &world, error);
     if (status == DIG_OK) {
         struct run d = {
             .trajectory = trajectory,
             .world      = &world,
-            .ode        = ode,
             .bed        = dig_ode_bed_create(&world),
             .tool       = dig_tool_make(&scene->bucket),
         };
@@ -140,7 +132,6 @@ static enum dig_status dig(const struct dig_stepper *const none,
         dig_ode_bed_destroy(d.bed);
         dig_setup_finish(&world);
     }
-    dig_ode_scene_destroy(ode);
     if (status != DIG_OK) {
         dig_recording_finish(&made);
         return status;

@@ -19,6 +19,7 @@
 
 struct dig_bodies;
 struct dig_crew;
+struct dig_ode_scene;
 struct dig_offloaded;
 
 #define DIG_PAIR_LISTS    ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
@@ -61,6 +62,9 @@ struct dig_world {
 
     // Clumps and obstacles, owned by the caller; NULL: none.
     struct dig_bodies *bodies;
+
+    // The scene in ODE, owned by the caller, which moves bucket and rocks; NULL: nothing does.
+    struct dig_ode_scene *ode;
 
     // Steps the grains in the kernel's place, see offloaded.h; NULL: the kernel does.
     struct dig_offloaded *offloaded;

@@ -80,14 +80,11 @@ static enum dig_status watch(struct dig_world *const world, struct row *const ro
 static enum dig_status rest(const struct dig_scene *const scene, const struct dig_gravel *const g,
                             struct row *const row, struct dig_error *const error)
 {
-    struct dig_bed         bed    = { 0 };
-    struct dig_grain_types types  = { 0 };
-    struct dig_world       world  = { 0 };
-    struct dig_ode_scene  *ode    = dig_ode_scene_create(scene);
-    enum dig_status        status = ode == NULL ? dig_setup_explain(DIG_ENOMEM, error)
-                                                : dig_bed_pour(NULL, scene, g, 1, NULL, &bed, error);
+    struct dig_bed   bed    = { 0 };
+    struct dig_world world  = { 0 };
+    enum dig_status  status = dig_bed_pour(NULL, scene, g, 1, NULL, &bed, error);
     if (status == DIG_OK) {
-        status = dig_setup_world(scene, g, ode, &bed, 0.0, &types, &world, error);
+        status = dig_setup_world(scene, g, &bed, 0.0, NULL, &world, error);
     }
     if (status == DIG_OK) {
         status = watch(&world, row);
@@ -95,7 +92,6 @@ static enum dig_status rest(const struct dig_scene *const scene, const struct di
         dig_setup_finish(&world);
     }
     dig_bed_finish(&bed);
-    dig_ode_scene_destroy(ode);
     return status;
 }
 

@@ -60,25 +60,12 @@ static struct dig_world make_world(const struct dig_scene *const scene, const si
             bed.radius_m[b * n + k] = 2.0 * GRAIN_m * (shape.spheres > 0 ? shape.radius[k] : 0.5);
         }
     }
-    struct dig_ode_scene *const ode = dig_ode_scene_create(scene);
-    struct dig_grain_types      types;
-    struct dig_world            world;
-    struct dig_error            error = { "" };
-    assert_non_null(ode);
-    assert_ok(dig_setup_world(scene, &gravel, ode, &bed, 0.0, &types, &world, &error), error);
-    if (world.bodies == NULL || world.bodies->ode == NULL) {
-        dig_ode_scene_destroy(ode);
-    }
+    struct dig_world world;
+    struct dig_error error = { "" };
+    assert_ok(dig_setup_world(scene, &gravel, &bed, 0.0, NULL, &world, &error), error);
     dig_bed_finish(&bed);
     world.single = false; // motions are read, and compared more finely
     return world;
-}
-
-static void finish(struct dig_world *const world)
-{
-    struct dig_ode_scene *const ode = world->bodies == NULL ? NULL : world->bodies->ode;
-    dig_setup_finish(world);
-    dig_ode_scene_destroy(ode);
 }
 
 TEST(a_clump_weighs_what_its_volume_weighs_and_falls_like_it)
@@ -105,7 +92,7 @@ TEST(a_clump_weighs_what_its_volume_weighs_and_falls_like_it)
                          c->body.x_m[a] + c->unit_m * arm[a], 1e-13);
         }
     }
-    finish(&world);
+    dig_setup_finish(&world);
 }
 
 static void sum_up(const struct dig_world *const world, double p_Ns[3], double l_Nms[3])
@@ -153,7 +140,7 @@ TEST(clumps_that_collide_conserve_momentum)
         assert_close(p[1][a], p[0][a], 1e-12 * scale);
         assert_close(l[1][a], l[0][a], 1e-6 * scale * GRAIN_m);
     }
-    finish(&world);
+    dig_setup_finish(&world);
 }
 
 // The same clump as a body of the Open Dynamics Engine, pushed by the law of its spheres with the
@@ -238,7 +225,7 @@ TEST(a_clump_bounces_as_a_body_of_ode_does)
     dBodyDestroy(other.body);
     dWorldDestroy(other.world);
     dCloseODE();
-    finish(&world);
+    dig_setup_finish(&world);
 }
 
 TEST(a_grain_rests_on_a_rock_and_the_rock_bears_it)
@@ -259,7 +246,7 @@ TEST(a_grain_rests_on_a_rock_and_the_rock_bears_it)
         assert_close(rock->f_N[2], -GRAIN_kg * GRAVITY, 1e-9);
         assert_close(world.grains.motion[0].x_m[2], 0.32 + GRAIN_m, 0.01 * GRAIN_m);
         assert_true(world.grains.motion[0].x_m[2] < 0.32 + GRAIN_m);
-        finish(&world);
+        dig_setup_finish(&world);
     }
 }
 
@@ -329,7 +316,7 @@ TEST(a_rock_takes_what_momentum_the_grains_lose)
         }
         assert_close(p_Ns, start[a], 1e-9 * GRAIN_kg);
     }
-    finish(&world);
+    dig_setup_finish(&world);
 }
 
 // The tool drives a rock ahead of it through empty space: what the rock gains the tool has felt.
@@ -365,7 +352,7 @@ TEST(a_rock_that_comes_is_felt_in_the_step_it_arrives)
         assert_close(world.grains.motion[0].v_mps[2], 0.0, 1e-200);
         dem_run(&world, 1);
         assert_true(world.grains.motion[0].v_mps[2] > 1e-6);
-        finish(&world);
+        dig_setup_finish(&world);
     }
 }
 
@@ -398,6 +385,6 @@ TEST(the_bucket_feels_the_rock_it_pushes)
         const struct dig_rigid *const body = &world.bodies->obstacles.rock[0].body;
         assert_true(body->v_mps[0] > 0.1);
         assert_close(felt_Ns, -body->mass_kg * body->v_mps[0], 1e-6 * body->mass_kg);
-        finish(&world);
+        dig_setup_finish(&world);
     }
 }

@@ -40,14 +40,10 @@ static struct dig_world make_world(const struct table *const then, const double 
         bed.radius_m[i] = SPHERE_m;
         bed.clump[i]    = (uint32_t)(i / 2 + 1);
     }
-    struct dig_ode_scene *const ode = dig_ode_scene_create(&scene);
-    struct dig_grain_types      types;
-    struct dig_world            world;
-    struct dig_error            error = { "" };
-    assert_non_null(ode);
-    const double fall_mps = 0.5 + 0.5 * GRAVITY * CLUMP_STEP_s;
-    assert_ok(dig_setup_world(&scene, &gravel, ode, &bed, fall_mps, &types, &world, &error), error);
-    dig_ode_scene_destroy(ode);
+    struct dig_world world;
+    struct dig_error error    = { "" };
+    const double     fall_mps = 0.5 + 0.5 * GRAVITY * CLUMP_STEP_s;
+    assert_ok(dig_setup_world(&scene, &gravel, &bed, fall_mps, NULL, &world, &error), error);
     dig_bed_finish(&bed);
     return world;
 }
