@@ -1,17 +1,18 @@
 #include "offline_dem/dig/dig.h"
 
+#include "core/units.h"
 #include "offline_dem/dig/input_checks.h"
 #include "offline_dem/dig/level.h"
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/dig/vtk.h"
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/ode_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-// Rows of a curve between two pictures, and between two progress reports.
-#define PICTURE_WINDOWS  20
-#define PROGRESS_WINDOWS 8
+// Rows of a curve between two pictures.
+#define PICTURE_WINDOWS 20
 // Steps between two progress reports of a dig that is not recorded.
 #define PROGRESS_STEPS 640
 
@@ -24,6 +25,17 @@ struct run {
     struct dig_world             world;
     struct dig_tool              tool;
 };
+
+// Moves ODE's bucket along the trajectory to time_s, and reads the tool from there. The velocity is
+// that of the phase that ends at or after time_s.
+static void place_tool(struct run *const d, const double time_s)
+{
+    const size_t at = dig_trajectory_phase(d->trajectory, time_s - 0.5 * d->world.dt_s);
+    const struct dig_phase *const phase = &d->trajectory->phase[at];
+    dig_ode_scene_move(d->world.ode, dig_trajectory_pose(d->trajectory, time_s), phase->vx_mps,
+                       phase->vz_mps, phase->omega_radps);
+    dig_ode_scene_read(d->world.ode, &d->tool);
+}
 
 // Mass of the grains in the bucket. Motions must be synchronised.
 static double carried_kg(const struct run *const d)
@@ -46,18 +58,30 @@ static enum dig_status record_window(struct run *const d, const size_t first, co
     struct dig_wrench sum    = { 0 };
     enum dig_status   status = dig_world_take_wrench(&d->world, &sum);
     for (size_t s = 1; s <= window && status == DIG_OK; s++) {
-        dig_setup_place_tool(d->trajectory, (double)(first + s) * dt_s, &d->world, &d->tool);
+        place_tool(d, (double)(first + s) * dt_s);
         status = dig_world_step(&d->world);
     }
     status = status == DIG_OK ? dig_world_take_wrench(&d->world, &sum) : status;
     if (status != DIG_OK) {
         return status;
     }
-    for (int k = 0; k < 3; k++) {
-        sum.f_N[k] *= 1.0 / (double)window;
-        sum.t_Nm[k] *= 1.0 / (double)window;
-    }
-    *row = dig_setup_force_row(d->trajectory, first, window, dt_s, &sum, carried_kg(d));
+    const double          share = 1.0 / (double)window;
+    const double          t_s   = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
+    const struct dig_pose pose  = dig_trajectory_pose(d->trajectory, t_s);
+
+    *row = (struct dig_force_row){
+        .t_s        = t_s,
+        .pin_x_m    = pose.x_m,
+        .pin_z_m    = pose.z_m,
+        .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
+        .Fx_N       = share * sum.f_N[0],
+        .Fy_N       = share * sum.f_N[1],
+        .Fz_N       = share * sum.f_N[2],
+        .Mx_Nm      = share * sum.t_Nm[0],
+        .My_Nm      = share * sum.t_Nm[1],
+        .Mz_Nm      = share * sum.t_Nm[2],
+        .carried_kg = carried_kg(d),
+    };
     return DIG_OK;
 }
 
@@ -72,7 +96,7 @@ static enum dig_status run(struct run *const d, struct dig_recording *const reco
         return DIG_ENOMEM;
     }
     // The forces before the first step belong to no row: they give the half kick.
-    dig_setup_place_tool(d->trajectory, 0.0, &d->world, &d->tool);
+    place_tool(d, 0.0);
     enum dig_status status = dig_world_step(&d->world);
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
@@ -84,7 +108,7 @@ static enum dig_status run(struct run *const d, struct dig_recording *const reco
         if (status == DIG_OK) {
             status = record_window(d, r * window, window, &recording->row[r]);
         }
-        if (status == DIG_OK && d->progress != NULL && r % PROGRESS_WINDOWS == 0 &&
+        if (status == DIG_OK && d->progress != NULL &&
             !d->progress->report(d->progress->context, recording->row[r].t_s, duration_s)) {
             status = DIG_ESTALE;
         }
@@ -119,7 +143,7 @@ static enum dig_status run_unrecorded(struct run *const d)
     dig_world_mark_stale(&d->world);
     enum dig_status status = DIG_OK;
     for (size_t s = 0; s <= steps && status == DIG_OK; s++) {
-        dig_setup_place_tool(d->trajectory, (double)s * d->world.dt_s, &d->world, &d->tool);
+        place_tool(d, (double)s * d->world.dt_s);
         status = dig_world_step(&d->world);
         if (status == DIG_OK && d->progress != NULL && s % PROGRESS_STEPS == 0 &&
             !d->progress->report(d->progress->context, 0.0, duration_s)) {
@@ -177,8 +201,11 @@ enum dig_status dig_dig_run(const struct dig_stepper *const stepper,
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_setup_check_phases(trajectory, error);
-    status = status == DIG_OK ? dig_input_checks_path(scene, trajectory, error) : status;
+    if (trajectory->phases == 0 || trajectory->phases > DIG_PHASES_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
+                             trajectory->phases, DIG_PHASES_MAX);
+    }
+    status = dig_input_checks_path(scene, trajectory, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -192,7 +219,7 @@ enum dig_status dig_dig_run(const struct dig_stepper *const stepper,
     struct dig_recording made = { 0 };
     status                    = dig_setup_world(scene, gravel, bed, 0.0, NULL, &d.world, error);
     if (status == DIG_OK) {
-        dig_setup_place_tool(trajectory, 0.0, &d.world, &d.tool);
+        place_tool(&d, 0.0);
         status = dig_input_checks_outside(&d.world, error);
         status = status == DIG_OK ? dig_input_checks_overlap(&d.world, error) : status;
         status = status == DIG_OK ? dig_input_checks_start(&d.world, &d.tool, error) : status;

@@ -16,16 +16,19 @@
 #include <stdint.h>
 
 struct dig_device;
+struct dig_world;
 
 /// Who steps the grains; NULL: the kernel, in double precision.
 struct dig_stepper {
-    struct dig_device *device;           // NULL: the kernel
-    bool               single_precision; // of the kernel, where it can (kernel.h)
+    struct dig_device *device; // NULL: the kernel
+    // Sets the world's stand_in (offline_dem/world/world.h), DIG_ENOMEM; NULL: as above.
+    enum dig_status (*take_over)(struct dig_world *world);
+    bool single_precision; // of the kernel, where it can (kernel.h)
     size_t
         threads; // in a large bed; 0, 1: none beside the caller. With a device they make its lists
 };
 
-/// Called from the computing thread every few hundred steps with the simulated time done and in
+/// Called from the computing thread every hundred steps or so with the simulated time done and in
 /// total, packing included. Return false to stop; the call then returns DIG_ESTALE and writes
 /// nothing.
 struct dig_progress {

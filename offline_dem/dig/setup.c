@@ -1,8 +1,8 @@
 #include "offline_dem/dig/setup.h"
 
-#include "core/units.h"
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/world/bodies.h"
+#include "offline_dem/world/ode_scene.h"
 #include "offline_dem/world/offloaded.h"
 
 #include <math.h>
@@ -25,15 +25,6 @@ enum dig_status dig_setup_check(const struct dig_scene *const  scene,
         }
     }
     return DIG_OK;
-}
-
-enum dig_status dig_setup_check_phases(const struct dig_trajectory *const trajectory,
-                                       struct dig_error *const            error)
-{
-    return trajectory->phases > 0 && trajectory->phases <= DIG_PHASES_MAX
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL, "trajectory: %zu phases, expected 1 to %d",
-                               trajectory->phases, DIG_PHASES_MAX);
 }
 
 // Counts of steps stay far below what an integer holds.
@@ -149,6 +140,8 @@ enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
     enum dig_status status = DIG_OK;
     if (stepper->device != NULL) {
         status = dig_offload(world, stepper->device);
+    } else if (stepper->take_over != NULL) {
+        status = stepper->take_over(world);
     }
     if (status == DIG_OK && stepper->threads > 1 && world->grains.n >= least_to_share) {
         status = dig_crew_create(stepper->threads, &world->crew);
@@ -165,38 +158,6 @@ void dig_setup_finish(struct dig_world *const world)
     dig_ode_scene_destroy(world->ode);
     world->ode = NULL;
     dig_world_finish(world);
-}
-
-void dig_setup_place_tool(const struct dig_trajectory *const trajectory, const double time_s,
-                          const struct dig_world *const world, struct dig_tool *const tool)
-{
-    const size_t                  at = dig_trajectory_phase(trajectory, time_s - 0.5 * world->dt_s);
-    const struct dig_phase *const phase = &trajectory->phase[at];
-    dig_ode_scene_move(world->ode, dig_trajectory_pose(trajectory, time_s), phase->vx_mps,
-                       phase->vz_mps, phase->omega_radps);
-    dig_ode_scene_read(world->ode, tool);
-}
-
-struct dig_force_row dig_setup_force_row(const struct dig_trajectory *const trajectory,
-                                         const size_t first, const size_t window, const double dt_s,
-                                         const struct dig_wrench *const mean,
-                                         const double                   carried_kg)
-{
-    const double          t_s  = ((double)first + 0.5 * (double)(window + 1)) * dt_s;
-    const struct dig_pose pose = dig_trajectory_pose(trajectory, t_s);
-    return (struct dig_force_row){
-        .t_s        = t_s,
-        .pin_x_m    = pose.x_m,
-        .pin_z_m    = pose.z_m,
-        .theta_deg  = pose.theta_rad / DIG_RAD_PER_DEG,
-        .Fx_N       = mean->f_N[0],
-        .Fy_N       = mean->f_N[1],
-        .Fz_N       = mean->f_N[2],
-        .Mx_Nm      = mean->t_Nm[0],
-        .My_Nm      = mean->t_Nm[1],
-        .Mz_Nm      = mean->t_Nm[2],
-        .carried_kg = carried_kg,
-    };
 }
 
 enum dig_status dig_setup_explain(const enum dig_status status, struct dig_error *const error)

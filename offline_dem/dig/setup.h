@@ -5,21 +5,15 @@
 
 #include "core/bed.h"
 #include "core/error.h"
-#include "core/recording.h"
 #include "core/scene.h"
 #include "offline_dem/dig/dig.h"
 #include "offline_dem/world/grain_types.h"
-#include "offline_dem/world/ode_scene.h"
 #include "offline_dem/world/world.h"
 
 /// Refuses a scene or a gravel that cannot be computed; *error names the key.
 DIG_MUST_CHECK enum dig_status dig_setup_check(const struct dig_scene  *scene,
                                                const struct dig_gravel *gravel,
                                                struct dig_error        *error);
-
-/// Refuses a trajectory without phases, or with too many.
-DIG_MUST_CHECK enum dig_status dig_setup_check_phases(const struct dig_trajectory *trajectory,
-                                                      struct dig_error            *error);
 
 /// A world of this bed between the scene's walls, without a tool, falling at fall_mps, its rocks
 /// moved by its ODE scene. *types are its grain types, NULL: not wanted. DIG_EINVAL for an
@@ -36,16 +30,6 @@ DIG_MUST_CHECK enum dig_status dig_setup_stepper(const struct dig_stepper *stepp
 
 /// Frees the world, its bodies, its crew and its ODE scene. A zeroed world is allowed.
 void dig_setup_finish(struct dig_world *world);
-
-/// Moves the world's bucket in ODE along the trajectory to time_s, and reads the tool from there.
-/// The velocity is that of the phase that ends at or after time_s.
-void dig_setup_place_tool(const struct dig_trajectory *trajectory, double time_s,
-                          const struct dig_world *world, struct dig_tool *tool);
-
-/// The row of a curve over the steps first + 1 … first + window, with their mean wrench.
-struct dig_force_row dig_setup_force_row(const struct dig_trajectory *trajectory, size_t first,
-                                         size_t window, double dt_s, const struct dig_wrench *mean,
-                                         double carried_kg);
 
 /// Message for a failure of packing or stepping; returns status.
 enum dig_status dig_setup_explain(enum dig_status status, struct dig_error *error);

@@ -1,18 +1,8 @@
 #include "offline_dem/reference/engine_ode.h"
 
-#include "offline_dem/dig/setup.h"
 #include "offline_dem/reference/ode_bed.h"
 
-#include <math.h>
-#include <stdlib.h>
-
-// One dig under way.
-struct run {
-    const struct dig_trajectory *trajectory;
-    const struct dig_world      *world; // grains as they were at the start
-    struct dig_ode_bed          *bed;
-    struct dig_tool              tool;
-};
+#include <assert.h>
 
 static enum dig_status reject(struct dig_error *const error, const char *const key)
 {
@@ -35,72 +25,36 @@ static enum dig_status check(const struct dig_scene *const scene, const char *co
     return vtk_dir != NULL ? reject(error, "pictures") : DIG_OK;
 }
 
-// One step with the bucket on the trajectory at time_s.
-static enum dig_status step(struct run *const d, const double time_s,
-                            struct dig_wrench *const on_tool)
+static enum dig_status step(struct dig_world *const w)
 {
-    dig_setup_place_tool(d->trajectory, time_s, d->world, &d->tool);
-    return dig_ode_bed_step(d->bed, &d->tool, on_tool);
+    struct dig_wrench     on_tool = { 0 };
+    const enum dig_status status  = dig_ode_bed_step(w->stand_in_own, w->tool, &on_tool);
+    dig_wrench_add(&on_tool, &w->sum_tool);
+    w->steps++;
+    return status;
 }
 
-static double carried_kg(const struct run *const d)
+// Nobody writes motions: nothing is dug before, and no grain is taken away.
+static enum dig_status sync(struct dig_world *const w, const bool all)
 {
-    const struct dig_grains *const grains = &d->world->grains;
-    double                         sum_kg = 0.0;
-    for (size_t i = 0; i < grains->n; i++) {
-        const struct dig_motion motion = dig_ode_bed_motion(d->bed, i);
-        if (dig_tool_contains(&d->tool, motion.x_m)) {
-            sum_kg += grains->type[grains->type_of[i]].mass_kg;
-        }
+    assert(!all);
+    for (size_t i = 0; i < w->grains.n; i++) {
+        w->grains.motion[i] = dig_ode_bed_motion(w->stand_in_own, i);
     }
-    return sum_kg;
-}
-
-// Means over the steps first + 1 … first + window.
-static enum dig_status record_window(struct run *const d, const size_t first, const size_t window,
-                                     struct dig_force_row *const row)
-{
-    const double      dt_s = d->world->dt_s;
-    struct dig_wrench sum  = { 0 };
-    for (size_t s = 1; s <= window; s++) {
-        struct dig_wrench     on_tool;
-        const enum dig_status status = step(d, (double)(first + s) * dt_s, &on_tool);
-        if (status != DIG_OK) {
-            return status;
-        }
-        for (int k = 0; k < 3; k++) {
-            sum.f_N[k] += on_tool.f_N[k] / (double)window;
-            sum.t_Nm[k] += on_tool.t_Nm[k] / (double)window;
-        }
-    }
-    *row = dig_setup_force_row(d->trajectory, first, window, dt_s, &sum, carried_kg(d));
     return DIG_OK;
 }
 
-static enum dig_status record(struct run *const d, const double output_s,
-                              const struct dig_progress *const progress,
-                              struct dig_recording *const      recording)
+static void destroy(struct dig_world *const w)
 {
-    const double duration_s = dig_trajectory_duration_s(d->trajectory);
-    const double steps      = duration_s / d->world->dt_s;
-    const size_t window     = (size_t)fmax(1.0, round(output_s / d->world->dt_s));
-    const size_t rows       = (size_t)floor(steps / (double)window + 1e-6);
-    recording->row          = calloc(rows + 1, sizeof *recording->row);
-    if (recording->row == NULL) {
-        return DIG_ENOMEM;
-    }
-    // The forces before the first step belong to no row: they give the half kick.
-    struct dig_wrench on_tool;
-    enum dig_status   status = step(d, 0.0, &on_tool);
-    for (size_t r = 0; r < rows && status == DIG_OK; r++) {
-        status = record_window(d, r * window, window, &recording->row[r]);
-        if (status == DIG_OK && progress != NULL &&
-            !progress->report(progress->context, recording->row[r].t_s, duration_s)) {
-            status = DIG_ESTALE;
-        }
-    }
-    recording->rows = rows;
-    return status;
+    dig_ode_bed_destroy(w->stand_in_own);
+}
+
+static enum dig_status take_over(struct dig_world *const w)
+{
+    static const struct dig_stand_in stand_in = { step, sync, destroy };
+    w->stand_in_own                           = dig_ode_bed_create(w);
+    w->stand_in                               = w->stand_in_own != NULL ? &stand_in : NULL;
+    return w->stand_in != NULL ? DIG_OK : DIG_ENOMEM;
 }
 
 static enum dig_status dig(const struct dig_stepper *const none,
@@ -111,33 +65,11 @@ static enum dig_status dig(const struct dig_stepper *const none,
                            struct dig_recording *const recording, struct dig_error *const error)
 {
     (void)none; // ODE steps the grains
-    enum dig_status status = dig_setup_check(scene, gravel, error);
-    status                 = status == DIG_OK ? check(scene, vtk_dir, error) : status;
-    status                 = status == DIG_OK ? dig_setup_check_phases(trajectory, error) : status;
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_world     world;
-    struct dig_recording made = { 0 };
-    status                    = dig_setup_world(scene, gravel, bed, 0.0, NULL, &world, error);
-    if (status == DIG_OK) {
-        struct run d = {
-            .trajectory = trajectory,
-            .world      = &world,
-            .bed        = dig_ode_bed_create(&world),
-            .tool       = dig_tool_make(&scene->bucket),
-        };
-        status = d.bed == NULL ? DIG_ENOMEM : record(&d, scene->output_s, progress, &made);
-        status = status == DIG_OK ? status : dig_setup_explain(status, error);
-        dig_ode_bed_destroy(d.bed);
-        dig_setup_finish(&world);
-    }
-    if (status != DIG_OK) {
-        dig_recording_finish(&made);
-        return status;
-    }
-    *recording = made;
-    return DIG_OK;
+    const struct dig_stepper stepper = { .take_over = take_over };
+    const enum dig_status    status  = check(scene, vtk_dir, error);
+    return status == DIG_OK ? dig_dig_run(&stepper, scene, gravel, bed, trajectory, NULL, progress,
+                                          recording, error)
+                            : status;
 }
 
 struct dig_engine dig_engine_ode(void)

@@ -31,6 +31,15 @@ struct dig_wrench {
     double t_Nm[3]; // about the moving pin
 };
 
+static inline void dig_wrench_add(const struct dig_wrench *const wrench,
+                                  struct dig_wrench *const       sum)
+{
+    for (int k = 0; k < 3; k++) {
+        sum->f_N[k] += wrench->f_N[k];
+        sum->t_Nm[k] += wrench->t_Nm[k];
+    }
+}
+
 struct dig_tool dig_tool_make(const struct dig_bucket *bucket);
 
 /// Sets the tool's pose and velocity.

@@ -24,79 +24,51 @@ struct dig_offloaded {
     size_t                   unpolled_steps;
 };
 
-enum dig_status dig_offload(struct dig_world *const w, struct dig_device *const device)
+static struct dig_offloaded *own_of(const struct dig_world *const w)
 {
-    assert(w != NULL && device != NULL && w->offloaded == NULL);
-    assert(w->bodies == NULL || w->bodies->ode == NULL);
-    struct dig_offloaded *const o = calloc(1, sizeof *o);
-    if (o == NULL || dig_device_arrays_init(&o->arrays) != DIG_OK) {
-        free(o);
-        return DIG_ENOMEM;
-    }
-    o->device           = device;
-    o->is_synced        = true;
-    o->is_motion_synced = true;
-    w->offloaded        = o;
-    w->single           = false;
-    w->stale            = true;
-    return DIG_OK;
+    return w->stand_in_own;
 }
 
-void dig_offloaded_destroy(struct dig_offloaded *const o)
+// The device stays its owner's.
+static void destroy(struct dig_world *const w)
 {
-    if (o != NULL) {
-        dig_device_arrays_finish(&o->arrays);
-        free(o);
-    }
+    dig_device_arrays_finish(&own_of(w)->arrays);
+    free(own_of(w));
 }
 
 // Adds the grains' wrenches to the world's and clears them.
 static void sum_wrenches(struct dig_world *const w)
 {
-    struct dig_device_view *const v = &w->offloaded->arrays.view;
+    struct dig_device_view *const v = &own_of(w)->arrays.view;
     for (uint32_t i = 0; i < v->n; i++) {
-        for (int k = 0; k < 3; k++) {
-            w->sum_tool.f_N[k] += v->on_tool[i].f_N[k];
-            w->sum_tool.t_Nm[k] += v->on_tool[i].t_Nm[k];
-        }
+        dig_wrench_add(&v->on_tool[i], &w->sum_tool);
     }
     memset(v->on_tool, 0, v->n * sizeof *v->on_tool);
 }
 
-enum dig_status dig_offloaded_sync_motion(struct dig_world *const w)
+static enum dig_status sync(struct dig_world *const w, const bool all)
 {
-    struct dig_offloaded *const o = w->offloaded;
-    if (o->is_synced || o->is_motion_synced) {
+    struct dig_offloaded *const o = own_of(w);
+    if (o->is_synced || (o->is_motion_synced && !all)) {
         return DIG_OK;
     }
-    const enum dig_status status = o->device->download(o->device, false);
-    if (status == DIG_OK) {
-        sum_wrenches(w);
-        o->is_motion_synced = true;
-    }
-    return status;
-}
-
-enum dig_status dig_offloaded_sync(struct dig_world *const w)
-{
-    struct dig_offloaded *const o = w->offloaded;
-    if (o->is_synced) {
-        return DIG_OK;
-    }
-    enum dig_status status = o->device->download(o->device, true);
+    enum dig_status status = o->device->download(o->device, all);
     if (status != DIG_OK) {
         return status;
     }
     sum_wrenches(w);
-    status       = dig_device_arrays_read(&o->arrays, w);
-    o->is_synced = status == DIG_OK;
+    o->is_motion_synced = true;
+    if (all) {
+        status       = dig_device_arrays_read(&o->arrays, w);
+        o->is_synced = status == DIG_OK;
+    }
     return status;
 }
 
 // Rebuilds the lists from the state on the host and uploads all of it.
 static enum dig_status upload(struct dig_world *const w)
 {
-    struct dig_offloaded *const o      = w->offloaded;
+    struct dig_offloaded *const o      = own_of(w);
     enum dig_status             status = dig_lists_rebuild(w, wide_skin);
     status = status == DIG_OK ? dig_device_arrays_write(w, &o->arrays) : status;
     if (status != DIG_OK) {
@@ -137,7 +109,7 @@ static struct dig_device_step make_step(const struct dig_world *const w)
 // Every poll_interval() steps: whether the lists have to be rebuilt.
 static enum dig_status poll_margins(struct dig_world *const w)
 {
-    struct dig_offloaded *const o = w->offloaded;
+    struct dig_offloaded *const o = own_of(w);
     if (++o->unpolled_steps < poll_interval(w)) {
         return DIG_OK;
     }
@@ -151,11 +123,11 @@ static enum dig_status poll_margins(struct dig_world *const w)
     return status;
 }
 
-enum dig_status dig_offloaded_step(struct dig_world *const w)
+static enum dig_status step(struct dig_world *const w)
 {
-    struct dig_offloaded *const o = w->offloaded;
+    struct dig_offloaded *const o = own_of(w);
     if (w->stale) {
-        enum dig_status status = dig_offloaded_sync(w);
+        enum dig_status status = sync(w, true);
         if (status == DIG_OK && !dig_grains_are_sound(&w->grains, w->dt_s)) {
             status = DIG_EINVAL;
         }
@@ -165,12 +137,32 @@ enum dig_status dig_offloaded_step(struct dig_world *const w)
         }
         w->stale = false;
     }
-    const struct dig_device_step step   = make_step(w);
-    enum dig_status              status = o->device->step(o->device, &step);
+    const struct dig_device_step next   = make_step(w);
+    enum dig_status              status = o->device->step(o->device, &next);
     o->is_synced                        = false;
     o->is_motion_synced                 = false;
     status                              = status == DIG_OK ? poll_margins(w) : status;
     w->started                          = true;
     w->steps++;
     return status;
+}
+
+enum dig_status dig_offload(struct dig_world *const w, struct dig_device *const device)
+{
+    static const struct dig_stand_in stand_in = { step, sync, destroy };
+    assert(w != NULL && device != NULL && w->stand_in == NULL);
+    assert(w->bodies == NULL || w->bodies->ode == NULL);
+    struct dig_offloaded *const o = calloc(1, sizeof *o);
+    if (o == NULL || dig_device_arrays_init(&o->arrays) != DIG_OK) {
+        free(o);
+        return DIG_ENOMEM;
+    }
+    o->device           = device;
+    o->is_synced        = true;
+    o->is_motion_synced = true;
+    w->stand_in         = &stand_in;
+    w->stand_in_own     = o;
+    w->single           = false;
+    w->stale            = true;
+    return DIG_OK;
 }

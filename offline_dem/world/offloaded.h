@@ -10,16 +10,8 @@
 
 /// Hands the world's steps to the device, which the world does not own and which serves no other
 /// world meanwhile. No rock of the world is movable. DIG_ENOMEM leaves the world with the kernel.
+/// From then on dig_world_step() gives DIG_EINVAL for a grain that leaves its margin between two
+/// polls, as for one that moves its radius in a step.
 DIG_MUST_CHECK enum dig_status dig_offload(struct dig_world *world, struct dig_device *device);
-
-/// dig_world_step(), dig_world_sync_motion() and dig_world_sync() of an offloaded world. DIG_EINVAL
-/// for a grain that leaves its margin between two polls, as for one that moves its radius in a
-/// step.
-DIG_MUST_CHECK enum dig_status dig_offloaded_step(struct dig_world *world);
-DIG_MUST_CHECK enum dig_status dig_offloaded_sync_motion(struct dig_world *world);
-DIG_MUST_CHECK enum dig_status dig_offloaded_sync(struct dig_world *world);
-
-/// NULL is allowed. The device stays its owner's.
-void dig_offloaded_destroy(struct dig_offloaded *offloaded);
 
 #endif // DIG_OFFLINE_DEM_WORLD_OFFLOADED_H

@@ -3,7 +3,6 @@
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/world/bodies.h"
 #include "offline_dem/world/lists.h"
-#include "offline_dem/world/offloaded.h"
 #include "offline_dem/world/surfaces.h"
 
 #include <math.h>
@@ -96,14 +95,6 @@ static enum dig_status prepare(struct dig_world *const w)
     return status;
 }
 
-static void add_wrench(const struct dig_wrench *const wrench, struct dig_wrench *const sum)
-{
-    for (int k = 0; k < 3; k++) {
-        sum->f_N[k] += wrench->f_N[k];
-        sum->t_Nm[k] += wrench->t_Nm[k];
-    }
-}
-
 static void add_contact_loads(struct dig_world *const w, const size_t slab)
 {
     struct dig_slab_sums *const sums = &w->slab_sums[slab];
@@ -167,8 +158,8 @@ static void advance_all(void *const context, const size_t first, const size_t en
 
 enum dig_status dig_world_step(struct dig_world *const w)
 {
-    if (w->offloaded != NULL) {
-        return dig_offloaded_step(w);
+    if (w->stand_in != NULL) {
+        return w->stand_in->step(w);
     }
     const enum dig_status status = prepare(w);
     if (status != DIG_OK) {
@@ -187,14 +178,14 @@ enum dig_status dig_world_step(struct dig_world *const w)
     w->on_walls = w->slab_sums[0].on_walls;
     w->stale    = w->slab_sums[0].left;
     for (size_t slab = 1; slab < slabs; slab++) {
-        add_wrench(&w->slab_sums[slab].on_tool, &w->on_tool);
-        add_wrench(&w->slab_sums[slab].on_walls, &w->on_walls);
+        dig_wrench_add(&w->slab_sums[slab].on_tool, &w->on_tool);
+        dig_wrench_add(&w->slab_sums[slab].on_walls, &w->on_walls);
         w->stale = w->stale || w->slab_sums[slab].left;
     }
     if (w->bodies != NULL) {
         dig_bodies_step_rocks(w);
     }
-    add_wrench(&w->on_tool, &w->sum_tool);
+    dig_wrench_add(&w->on_tool, &w->sum_tool);
     w->started = true;
     w->steps++;
     return DIG_OK;
@@ -213,13 +204,13 @@ enum dig_status dig_world_take_wrench(struct dig_world *const w, struct dig_wren
 enum dig_status dig_world_sync_motion(struct dig_world *const w)
 {
     dig_grains_read_single(&w->grains);
-    return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync_motion(w);
+    return w->stand_in == NULL ? DIG_OK : w->stand_in->sync(w, false);
 }
 
 enum dig_status dig_world_sync(struct dig_world *const w)
 {
     dig_grains_end_single(&w->grains);
-    return w->offloaded == NULL ? DIG_OK : dig_offloaded_sync(w);
+    return w->stand_in == NULL ? DIG_OK : w->stand_in->sync(w, true);
 }
 
 void dig_world_finish(struct dig_world *const world)
@@ -227,8 +218,10 @@ void dig_world_finish(struct dig_world *const world)
     if (world == NULL) {
         return;
     }
-    dig_offloaded_destroy(world->offloaded);
-    world->offloaded = NULL;
+    if (world->stand_in != NULL) {
+        world->stand_in->destroy(world);
+        world->stand_in = NULL;
+    }
     free(world->slab_sums);
     world->slab_sums      = NULL;
     world->slab_sums_room = 0;

@@ -20,7 +20,7 @@
 struct dig_bodies;
 struct dig_crew;
 struct dig_ode_scene;
-struct dig_offloaded;
+struct dig_world;
 
 #define DIG_PAIR_LISTS    ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
 #define DIG_SURFACE_LISTS ((size_t)2 * DIG_GRAIN_TYPES_MAX)
@@ -35,6 +35,15 @@ struct dig_contact_detection {
     size_t              near_count_room, count_room;
     struct dig_contacts pair[DIG_PAIR_LISTS];
     struct dig_contacts surface[DIG_SURFACE_LISTS];
+};
+
+/// What steps the grains of a world in the kernel's place. Status as dig_world_step() and
+/// dig_world_sync().
+struct dig_stand_in {
+    enum dig_status (*step)(struct dig_world *world);
+    /// Motions to the world; with `all` contacts, too, and what is written then counts.
+    enum dig_status (*sync)(struct dig_world *world, bool all);
+    void (*destroy)(struct dig_world *world);
 };
 
 struct dig_world {
@@ -66,8 +75,9 @@ struct dig_world {
     // The scene in ODE, owned by the caller, which moves bucket and rocks; NULL: nothing does.
     struct dig_ode_scene *ode;
 
-    // Steps the grains in the kernel's place, see offloaded.h; NULL: the kernel does.
-    struct dig_offloaded *offloaded;
+    // Steps the grains, and what it keeps for that; NULL: the kernel does.
+    const struct dig_stand_in *stand_in;
+    void                      *stand_in_own;
 
     // State.
     struct dig_grains grains;
@@ -119,8 +129,8 @@ DIG_MUST_CHECK enum dig_status dig_world_step(struct dig_world *world);
 DIG_MUST_CHECK enum dig_status dig_world_take_wrench(struct dig_world  *world,
                                                      struct dig_wrench *wrench);
 
-/// Before motions are read: copies them from single precision, or from a device. Fails with a
-/// device only.
+/// Before motions are read: copies them from single precision, or from what stands in for the
+/// kernel. Fails with a device only.
 DIG_MUST_CHECK enum dig_status dig_world_sync_motion(struct dig_world *world);
 
 /// Before motions are written or grains removed: the same, and contacts from a device. What is
