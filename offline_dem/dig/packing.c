@@ -186,7 +186,7 @@ static bool is_free(const struct pouring *const p, const struct dig_bed *const b
     }
     for (size_t r = 0; r < p->obstacles.rocks; r++) {
         double closest_m[3];
-        if (dig_rock_closest(&p->obstacles.rock[r], at_m, closest_m) < radius_m) {
+        if (dig_rock_surface_closest(&p->obstacles.rock[r].surface, at_m, closest_m) < radius_m) {
             return false;
         }
     }

@@ -161,7 +161,7 @@ static void write_bucket(FILE *const file, const struct dig_tool *const tool)
 }
 
 // A rock as the faces of a cube, projected onto the sphere if it is one, in FACETS x FACETS tiles.
-static void write_rock_points(FILE *const file, const struct dig_rock *const rock)
+static void write_rock_points(FILE *const file, const struct dig_rock_surface *const rock)
 {
     for (int face = 0; face < 6; face++) {
         for (int k = 0; k < (FACETS + 1) * (FACETS + 1); k++) {
@@ -177,9 +177,9 @@ static void write_rock_points(FILE *const file, const struct dig_rock *const roc
                 p[a] *=
                     rock->shape == DIG_OBSTACLE_BOX ? rock->half_m[a] : rock->half_m[0] / length;
             }
-            dig_rigid_rotate(rock->body.q, p, x_m);
-            (void)fprintf(file, "%.7g %.7g %.7g\n", x_m[0] + rock->body.x_m[0],
-                          x_m[1] + rock->body.x_m[1], x_m[2] + rock->body.x_m[2]);
+            dig_rigid_rotate(rock->q, p, x_m);
+            (void)fprintf(file, "%.7g %.7g %.7g\n", x_m[0] + rock->x_m[0], x_m[1] + rock->x_m[1],
+                          x_m[2] + rock->x_m[2]);
         }
     }
 }
@@ -190,7 +190,7 @@ static void write_rocks(FILE *const file, const struct dig_obstacles *const obst
     const size_t faces = 6 * obstacles->rocks;
     (void)fprintf(file, "POINTS %zu double\n", faces * side * side);
     for (size_t r = 0; r < obstacles->rocks; r++) {
-        write_rock_points(file, &obstacles->rock[r]);
+        write_rock_points(file, &obstacles->rock[r].surface);
     }
     const size_t tiles = (size_t)FACETS * FACETS; // of one face
     const size_t quads = faces * tiles;

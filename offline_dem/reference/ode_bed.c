@@ -32,11 +32,11 @@ static void place_rocks(struct dig_ode_bed *const bed)
 {
     for (size_t r = 0; r < bed->rocks; r++) {
         struct dig_rock *const rock = &bed->rock[r];
-        const double *const    x    = rock->body.x_m;
+        const double *const    x    = rock->surface.x_m;
         memset(rock->f_N, 0, sizeof rock->f_N);
         memset(rock->t_Nm, 0, sizeof rock->t_Nm);
         dGeomSetPosition(bed->rock_geom[r], x[0], x[1], x[2]);
-        dGeomSetQuaternion(bed->rock_geom[r], rock->body.q);
+        dGeomSetQuaternion(bed->rock_geom[r], rock->surface.q);
     }
 }
 
@@ -129,8 +129,8 @@ static void add_rocks(struct dig_ode_bed *const bed, const struct dig_bodies *co
     memcpy(bed->rock, bodies->obstacles.rock, sizeof bed->rock);
     memcpy(bed->rock_law, bodies->rock_law, sizeof bed->rock_law);
     for (size_t r = 0; r < bed->rocks; r++) {
-        const double *const h = bed->rock[r].half_m;
-        bed->rock_geom[r]     = bed->rock[r].shape == DIG_OBSTACLE_BOX
+        const double *const h = bed->rock[r].surface.half_m;
+        bed->rock_geom[r]     = bed->rock[r].surface.shape == DIG_OBSTACLE_BOX
                                     ? dCreateBox(bed->rocks_space, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
                                     : dCreateSphere(bed->rocks_space, h[0]);
         dGeomSetData(bed->rock_geom[r], (void *)(uintptr_t)r); // NOLINT(performance-no-int-to-ptr)

@@ -160,11 +160,11 @@ void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
         return;
     }
     const dReal *const  x        = dBodyGetPosition(bed->body[i]);
-    const double *const w        = rock->body.w_radps;
-    const double *const v        = rock->body.v_mps;
-    const double        arm_m[3] = { x[0] - kinematics.dx_m - rock->body.x_m[0],
-                                     x[1] - kinematics.dy_m - rock->body.x_m[1],
-                                     x[2] - kinematics.dz_m - rock->body.x_m[2] };
+    const double *const w        = rock->w_radps;
+    const double *const v        = rock->v_mps;
+    const double        arm_m[3] = { x[0] - kinematics.dx_m - rock->surface.x_m[0],
+                                     x[1] - kinematics.dy_m - rock->surface.x_m[1],
+                                     x[2] - kinematics.dz_m - rock->surface.x_m[2] };
     kinematics.vx_mps -= v[0] + w[1] * arm_m[2] - w[2] * arm_m[1];
     kinematics.vy_mps -= v[1] + w[2] * arm_m[0] - w[0] * arm_m[2];
     kinematics.vz_mps -= v[2] + w[0] * arm_m[1] - w[1] * arm_m[0];

@@ -14,25 +14,16 @@
 
 static struct dig_rock make_rock(const struct dig_obstacle *const o)
 {
-    struct dig_rock rock = { .shape = o->shape, .movable = o->movable, .body.q = { 1.0 } };
+    struct dig_rock rock = { .surface = { .shape = o->shape, .q = { 1.0 } },
+                             .movable = o->movable };
     const bool      box  = o->shape == DIG_OBSTACLE_BOX;
     for (size_t k = 0; k < 3; k++) {
-        rock.half_m[k]   = 0.5 * o->size_m[box ? k : 0];
-        rock.body.x_m[k] = o->centre_m[k];
+        rock.surface.half_m[k] = 0.5 * o->size_m[box ? k : 0];
+        rock.surface.x_m[k]    = o->centre_m[k];
     }
-    const double *const h  = rock.half_m;
+    const double *const h  = rock.surface.half_m;
     const double        m3 = box ? 8.0 * h[0] * h[1] * h[2] : DIG_PI / 0.75 * h[0] * h[0] * h[0];
-    rock.body.mass_kg      = o->density_kgpm3 * m3;
-    if (!o->movable) {
-        rock.body.mass_kg = 0.0;
-        return rock;
-    }
-    for (size_t k = 0; k < 3; k++) {
-        const double y2               = h[(k + 1) % 3] * h[(k + 1) % 3];
-        const double z2               = h[(k + 2) % 3] * h[(k + 2) % 3];
-        const double m2               = box ? (y2 + z2) / 3.0 : 0.4 * h[0] * h[0];
-        rock.body.inverse_pkgm2[k][k] = 1.0 / (rock.body.mass_kg * m2);
-    }
+    rock.mass_kg           = o->movable ? o->density_kgpm3 * m3 : 0.0;
     return rock;
 }
 
@@ -49,8 +40,8 @@ void dig_obstacles_load_poses(struct dig_obstacles *const obstacles,
                               const struct dig_bed *const bed)
 {
     for (size_t i = 0; i < obstacles->rocks && i < bed->rocks; i++) {
-        memcpy(obstacles->rock[i].body.x_m, bed->rock[i].x_m, sizeof bed->rock[i].x_m);
-        memcpy(obstacles->rock[i].body.q, bed->rock[i].q, sizeof bed->rock[i].q);
+        memcpy(obstacles->rock[i].surface.x_m, bed->rock[i].x_m, sizeof bed->rock[i].x_m);
+        memcpy(obstacles->rock[i].surface.q, bed->rock[i].q, sizeof bed->rock[i].q);
     }
 }
 
@@ -59,37 +50,23 @@ void dig_obstacles_save_poses(const struct dig_obstacles *const obstacles,
 {
     bed->rocks = obstacles->rocks;
     for (size_t i = 0; i < obstacles->rocks; i++) {
-        memcpy(bed->rock[i].x_m, obstacles->rock[i].body.x_m, sizeof bed->rock[i].x_m);
-        memcpy(bed->rock[i].q, obstacles->rock[i].body.q, sizeof bed->rock[i].q);
+        memcpy(bed->rock[i].x_m, obstacles->rock[i].surface.x_m, sizeof bed->rock[i].x_m);
+        memcpy(bed->rock[i].q, obstacles->rock[i].surface.q, sizeof bed->rock[i].q);
     }
 }
 
-double dig_rock_least_half_m(const struct dig_rock *const rock)
+double dig_rock_least_half_m(const struct dig_rock_surface *const rock)
 {
     const double *const h = rock->half_m;
     return rock->shape == DIG_OBSTACLE_BOX ? fmin(h[0], fmin(h[1], h[2])) : h[0];
 }
 
-struct dig_rock_surface dig_rock_surface_of(const struct dig_rock *const rock)
-{
-    struct dig_rock_surface new_index = { .shape = rock->shape };
-    memcpy(new_index.half_m, rock->half_m, sizeof new_index.half_m);
-    memcpy(new_index.x_m, rock->body.x_m, sizeof new_index.x_m);
-    memcpy(new_index.q, rock->body.q, sizeof new_index.q);
-    return new_index;
-}
-
-double dig_rock_closest(const struct dig_rock *const rock, const double p_m[3], double closest_m[3])
-{
-    const struct dig_rock_surface new_index = dig_rock_surface_of(rock);
-    return dig_rock_surface_closest(&new_index, p_m, closest_m);
-}
-
 // Image of a grain nearest to the rock along y.
-static void nearest_image(const struct dig_world *const world, const struct dig_rock *const rock,
-                          const double x_m[], double image_m[3])
+static void nearest_image(const struct dig_world *const        world,
+                          const struct dig_rock_surface *const rock, const double x_m[],
+                          double image_m[3])
 {
-    const double y_m = rock->body.x_m[1];
+    const double y_m = rock->x_m[1];
     memcpy(image_m, x_m, 3 * sizeof *image_m);
     if (world->period_y_m > 0.0) {
         image_m[1] = y_m + dig_period_fold(x_m[1] - y_m, world->period_y_m,
@@ -103,7 +80,7 @@ static double length(const double v[3])
 }
 
 // Lever by which a rotation moves the surface.
-static double turning_radius_m(const struct dig_rock *const rock)
+static double turning_radius_m(const struct dig_rock_surface *const rock)
 {
     return rock->shape == DIG_OBSTACLE_BOX ? length(rock->half_m) : 0.0;
 }
@@ -112,10 +89,10 @@ static void set_margins(struct dig_obstacles *const o, const double dt_s)
 {
     for (size_t r = 0; r < o->rocks; r++) {
         const struct dig_rock *const rock    = &o->rock[r];
-        const double                 least_m = dig_rock_least_half_m(rock);
+        const double                 least_m = dig_rock_least_half_m(&rock->surface);
         const double                 speed_mps =
-            length(rock->body.v_mps) + turning_radius_m(rock) * length(rock->body.w_radps);
-        o->reference[r] = dig_rock_surface_of(rock);
+            length(rock->v_mps) + turning_radius_m(&rock->surface) * length(rock->w_radps);
+        o->reference[r] = rock->surface;
         o->margin_m[r] =
             rock->movable ? MARGIN_SHARE * least_m + MARGIN_STEPS * dt_s * speed_mps : 0.0;
     }
@@ -124,16 +101,15 @@ static void set_margins(struct dig_obstacles *const o, const double dt_s)
 bool dig_obstacles_left_margin(const struct dig_obstacles *const o)
 {
     for (size_t r = 0; r < o->rocks; r++) {
-        const struct dig_rigid *const body = &o->rock[r].body;
-        const double *const           x    = o->reference[r].x_m;
-        const double *const           q    = o->reference[r].q;
-        const double d[3]   = { body->x_m[0] - x[0], body->x_m[1] - x[1], body->x_m[2] - x[2] };
-        const double cosine = body->q[0] * q[0] + body->q[1] * q[1] + body->q[2] * q[2] +
-                              body->q[3] * q[3]; // of half the angle it has turned
+        const struct dig_rock_surface *const now = &o->rock[r].surface;
+        const double *const                  x   = o->reference[r].x_m;
+        const double *const                  q   = o->reference[r].q;
+        const double d[3]   = { now->x_m[0] - x[0], now->x_m[1] - x[1], now->x_m[2] - x[2] };
+        const double cosine = now->q[0] * q[0] + now->q[1] * q[1] + now->q[2] * q[2] +
+                              now->q[3] * q[3]; // of half the angle it has turned
         const double chord = 2.0 * sqrt(fmax(0.0, 1.0 - cosine * cosine));
         // Negated, so that a position that is not a number counts as having left.
-        if (o->rock[r].movable &&
-            !(length(d) + chord * turning_radius_m(&o->rock[r]) <= o->margin_m[r])) {
+        if (o->rock[r].movable && !(length(d) + chord * turning_radius_m(now) <= o->margin_m[r])) {
             return true;
         }
     }
@@ -163,8 +139,9 @@ enum dig_status dig_obstacles_detect(struct dig_obstacles *const   o,
         for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
             double closest_m[3];
             double image_m[3];
-            nearest_image(world, &o->rock[r], dig_grains_position(g, i), image_m);
-            if (dig_rock_closest(&o->rock[r], image_m, closest_m) < reach_m + o->margin_m[r]) {
+            nearest_image(world, &o->rock[r].surface, dig_grains_position(g, i), image_m);
+            if (dig_rock_surface_closest(&o->rock[r].surface, image_m, closest_m) <
+                reach_m + o->margin_m[r]) {
                 const uint32_t at = old[i * o->rocks + r];
                 status            = dig_contacts_add(&fresh[type], i, r, r,
                                           at == UINT32_MAX ? NULL : &o->contact[type], at);
@@ -187,18 +164,17 @@ static void fill_block(const struct dig_world *const world, const struct dig_roc
                        const struct dig_motion *const m, const double radius_m, const size_t c,
                        struct dig_block *const block, double arm_m[3])
 {
-    double                        closest_m[3];
-    double                        image_m[3];
-    double                        d_m[3];
-    const struct dig_rock_surface new_index = dig_rock_surface_of(rock);
-    nearest_image(world, rock, m->x_m, image_m);
-    dig_rock_surface_separation(&new_index, image_m, radius_m, closest_m, d_m);
-    const double *const w = rock->body.w_radps;
+    double closest_m[3];
+    double image_m[3];
+    double d_m[3];
+    nearest_image(world, &rock->surface, m->x_m, image_m);
+    dig_rock_surface_separation(&rock->surface, image_m, radius_m, closest_m, d_m);
+    const double *const w = rock->w_radps;
     for (int k = 0; k < 3; k++) {
-        arm_m[k] = closest_m[k] - rock->body.x_m[k];
+        arm_m[k] = closest_m[k] - rock->surface.x_m[k];
     }
     for (int k = 0; k < 3; k++) {
-        const double v = rock->body.v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
+        const double v = rock->v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
                          w[(k + 2) % 3] * arm_m[(k + 1) % 3];
         block->in[k][c]     = d_m[k];
         block->in[3 + k][c] = m->v_mps[k] - v;

@@ -5,16 +5,15 @@
 
 #include "core/bed.h"
 #include "core/scene.h"
-#include "offline_dem/law/rigid.h"
 #include "offline_dem/shapes/rock_surface.h"
 #include "offline_dem/world/world.h"
 
-/// A rock: its shape, its pose, and the load of the grains in the last step.
+/// A rock: its surface, its motion, and the load of the grains in the last step.
 struct dig_rock {
-    enum dig_obstacle_shape shape;
-    double                  half_m[3]; // sphere: its radius in half_m[0]; box: half its edges
+    struct dig_rock_surface surface;
     bool                    movable;
-    struct dig_rigid        body;
+    double                  mass_kg; // 0: fixed
+    double                  v_mps[3], w_radps[3];
     double                  f_N[3], t_Nm[3]; // about its centre
 };
 
@@ -37,12 +36,7 @@ void dig_obstacles_load_poses(struct dig_obstacles *obstacles, const struct dig_
 void dig_obstacles_save_poses(const struct dig_obstacles *obstacles, struct dig_bed *bed);
 
 /// Half its smallest edge, or its radius.
-double dig_rock_least_half_m(const struct dig_rock *rock);
-
-struct dig_rock_surface dig_rock_surface_of(const struct dig_rock *rock);
-
-/// The point of the rock's surface closest to p_m, and the distance to it: negative inside.
-double dig_rock_closest(const struct dig_rock *rock, const double p_m[3], double closest_m[3]);
+double dig_rock_least_half_m(const struct dig_rock_surface *rock);
 
 /// As the functions of offline_dem/world/bodies.h.
 DIG_MUST_CHECK enum dig_status dig_obstacles_detect(struct dig_obstacles   *obstacles,

@@ -30,18 +30,18 @@ static void remove_all(struct dig_ode_scene *const ode)
 static dBodyID make_body(struct dig_ode_scene *const ode, const struct dig_rock *const rock)
 {
     dBodyID             body = dBodyCreate(ode->world);
-    const double *const h    = rock->half_m;
+    const double *const h    = rock->surface.half_m;
     dMass               mass;
-    if (rock->shape == DIG_OBSTACLE_BOX) {
-        dMassSetBoxTotal(&mass, rock->body.mass_kg, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2]);
+    if (rock->surface.shape == DIG_OBSTACLE_BOX) {
+        dMassSetBoxTotal(&mass, rock->mass_kg, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2]);
     } else {
-        dMassSetSphereTotal(&mass, rock->body.mass_kg, h[0]);
+        dMassSetSphereTotal(&mass, rock->mass_kg, h[0]);
     }
     dBodySetMass(body, &mass);
-    dBodySetPosition(body, rock->body.x_m[0], rock->body.x_m[1], rock->body.x_m[2]);
-    dBodySetQuaternion(body, rock->body.q);
-    dBodySetLinearVel(body, rock->body.v_mps[0], rock->body.v_mps[1], rock->body.v_mps[2]);
-    dBodySetAngularVel(body, rock->body.w_radps[0], rock->body.w_radps[1], rock->body.w_radps[2]);
+    dBodySetPosition(body, rock->surface.x_m[0], rock->surface.x_m[1], rock->surface.x_m[2]);
+    dBodySetQuaternion(body, rock->surface.q);
+    dBodySetLinearVel(body, rock->v_mps[0], rock->v_mps[1], rock->v_mps[2]);
+    dBodySetAngularVel(body, rock->w_radps[0], rock->w_radps[1], rock->w_radps[2]);
     dBodySetAutoDisableFlag(body, 0);
     return body;
 }
@@ -51,8 +51,8 @@ void dig_ode_rocks_set(struct dig_ode_scene *const ode, const size_t rocks,
 {
     remove_all(ode);
     for (size_t i = 0; i < rocks; i++) {
-        const double *const h = rock[i].half_m;
-        ode->rock[i]          = rock[i].shape == DIG_OBSTACLE_BOX
+        const double *const h = rock[i].surface.half_m;
+        ode->rock[i]          = rock[i].surface.shape == DIG_OBSTACLE_BOX
                                     ? dCreateBox(ode->rocks, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
                                     : dCreateSphere(ode->rocks, h[0]);
         // Points to the rock's entry, from which a contact finds its number.
@@ -61,9 +61,9 @@ void dig_ode_rocks_set(struct dig_ode_scene *const ode, const size_t rocks,
         if (ode->body[i] != NULL) {
             dGeomSetBody(ode->rock[i], ode->body[i]);
         } else {
-            const double *const x = rock[i].body.x_m;
+            const double *const x = rock[i].surface.x_m;
             dGeomSetPosition(ode->rock[i], x[0], x[1], x[2]);
-            dGeomSetQuaternion(ode->rock[i], rock[i].body.q);
+            dGeomSetQuaternion(ode->rock[i], rock[i].surface.q);
         }
     }
     ode->count = rocks;
@@ -123,7 +123,7 @@ static void collide_plates(struct rock_step *const m, const struct dig_tool *con
     double body_m[3];
     double least_m    = INFINITY;
     double closest[3] = { 0.0, 0.0, 0.0 };
-    dig_tool_to_body(tool, rock->body.x_m, body_m);
+    dig_tool_to_body(tool, rock->surface.x_m, body_m);
     for (size_t p = 0; p < tool->plates; p++) {
         double c[3];
         dig_tool_closest(tool, p, body_m, c);
@@ -133,7 +133,7 @@ static void collide_plates(struct rock_step *const m, const struct dig_tool *con
             memcpy(closest, c, sizeof closest);
         }
     }
-    if (!(least_m < rock->half_m[0]) || !(least_m > 0.0)) {
+    if (!(least_m < rock->surface.half_m[0]) || !(least_m > 0.0)) {
         return;
     }
     const double away[3] = { body_m[0] - closest[0], body_m[1] - closest[1],
@@ -142,7 +142,7 @@ static void collide_plates(struct rock_step *const m, const struct dig_tool *con
     double       arm_m[3];
     dig_tool_rotate(tool, away, normal);
     dig_tool_rotate(tool, closest, arm_m);
-    dContactGeom at = { .depth = rock->half_m[0] - least_m };
+    dContactGeom at = { .depth = rock->surface.half_m[0] - least_m };
     for (int k = 0; k < 3; k++) {
         at.normal[k] = normal[k] / least_m;
         at.pos[k]    = arm_m[k];
@@ -169,10 +169,10 @@ static void read_back(const struct dig_ode_scene *const ode, struct dig_rock roc
         if (ode->body[i] == NULL) {
             continue;
         }
-        memcpy(rock[i].body.x_m, dBodyGetPosition(ode->body[i]), sizeof rock[i].body.x_m);
-        memcpy(rock[i].body.v_mps, dBodyGetLinearVel(ode->body[i]), sizeof rock[i].body.v_mps);
-        memcpy(rock[i].body.w_radps, dBodyGetAngularVel(ode->body[i]), sizeof rock[i].body.w_radps);
-        memcpy(rock[i].body.q, dBodyGetQuaternion(ode->body[i]), sizeof rock[i].body.q);
+        memcpy(rock[i].surface.x_m, dBodyGetPosition(ode->body[i]), sizeof rock[i].surface.x_m);
+        memcpy(rock[i].v_mps, dBodyGetLinearVel(ode->body[i]), sizeof rock[i].v_mps);
+        memcpy(rock[i].w_radps, dBodyGetAngularVel(ode->body[i]), sizeof rock[i].w_radps);
+        memcpy(rock[i].surface.q, dBodyGetQuaternion(ode->body[i]), sizeof rock[i].surface.q);
     }
 }
 
@@ -187,7 +187,7 @@ void dig_ode_rocks_step(struct dig_ode_scene *const ode, const struct dig_tool *
         if (ode->body[i] == NULL) {
             continue;
         }
-        if (tool != NULL && rock[i].shape == DIG_OBSTACLE_SPHERE) {
+        if (tool != NULL && rock[i].surface.shape == DIG_OBSTACLE_SPHERE) {
             collide_plates(&m, tool, &rock[i], i);
         } else if (tool != NULL) {
             collide_bucket(&m, i);

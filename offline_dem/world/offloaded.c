@@ -101,7 +101,7 @@ static struct dig_device_step make_step(const struct dig_world *const w)
     }
     step.rocks = w->bodies == NULL ? 0 : (uint32_t)w->bodies->obstacles.rocks;
     for (uint32_t r = 0; r < step.rocks; r++) {
-        step.rock[r] = dig_rock_surface_of(&w->bodies->obstacles.rock[r]);
+        step.rock[r] = w->bodies->obstacles.rock[r].surface;
     }
     return step;
 }

@@ -260,11 +260,11 @@ TEST(the_closest_point_of_a_rock_is_the_closest)
                                                        .size_m   = { 0.2, 0.4, 0.6 } };
     struct dig_obstacles o    = dig_obstacles_make(&scene);
     const double         w[3] = { 0.5, -0.3, 0.9 };
-    dig_rigid_integrate(o.rock[0].body.q, w, 1.0, o.rock[0].body.q);
+    dig_rigid_integrate(o.rock[0].surface.q, w, 1.0, o.rock[0].surface.q);
     const double p[3][3] = { { 0.5, 0.2, 0.9 }, { 0.1, 0.45, 0.3 }, { 0.12, 0.25, 0.3 } };
     for (size_t i = 0; i < 3; i++) {
         double       closest[3];
-        const double apart = dig_rock_closest(&o.rock[0], p[i], closest);
+        const double apart = dig_rock_surface_closest(&o.rock[0].surface, p[i], closest);
         double       least = INFINITY;
         for (int face = 0; face < 6; face++) {
             for (int u = 0; u <= 100; u++) {
@@ -274,7 +274,7 @@ TEST(the_closest_point_of_a_rock_is_the_closest)
                     b[face / 2]           = face % 2 ? half[face / 2] : -half[face / 2];
                     b[(face / 2 + 1) % 3] = (u / 50.0 - 1.0) * half[(face / 2 + 1) % 3];
                     b[(face / 2 + 2) % 3] = (v / 50.0 - 1.0) * half[(face / 2 + 2) % 3];
-                    dig_rigid_rotate(o.rock[0].body.q, b, x);
+                    dig_rigid_rotate(o.rock[0].surface.q, b, x);
                     least = fmin(least, hypot(hypot(x[0] + 0.1 - p[i][0], x[1] + 0.2 - p[i][1]),
                                               x[2] + 0.3 - p[i][2]));
                 }
@@ -306,11 +306,11 @@ TEST(a_rock_takes_what_momentum_the_grains_lose)
     world.grains.motion[1].v_mps[2]   = -0.7;
     const struct dig_rock *const rock = &world.bodies->obstacles.rock[0];
     dem_run(&world, 6000);
-    assert_true(rock->body.v_mps[0] > 0.01 && rock->body.v_mps[2] < -0.01);
-    assert_true(fabs(rock->body.w_radps[1]) > 0.1);
+    assert_true(rock->v_mps[0] > 0.01 && rock->v_mps[2] < -0.01);
+    assert_true(fabs(rock->w_radps[1]) > 0.1);
     const double start[3] = { GRAIN_kg, 0.0, -0.7 * GRAIN_kg };
     for (int a = 0; a < 3; a++) {
-        double p_Ns = rock->body.mass_kg * rock->body.v_mps[a];
+        double p_Ns = rock->mass_kg * rock->v_mps[a];
         for (size_t i = 0; i < 2; i++) {
             p_Ns += GRAIN_kg * world.grains.motion[i].v_mps[a];
         }
@@ -339,14 +339,15 @@ TEST(a_rock_that_comes_is_felt_in_the_step_it_arrives)
         const double     no[1][3] = { { 0.0 } };
         struct dig_world world    = make_world(&scene, 1, at, no);
         struct dig_rock *rock     = &world.bodies->obstacles.rock[0];
-        rock->body.v_mps[2]       = i == 0 ? 0.4 : 0.0;
-        rock->body.w_radps[0]     = i == 0 ? 0.0 : 20.0;
+        rock->v_mps[2]            = i == 0 ? 0.4 : 0.0;
+        rock->w_radps[0]          = i == 0 ? 0.0 : 20.0;
         dig_ode_rocks_set(world.bodies->ode, 1, rock);
         double apart_m = INFINITY;
         for (int s = 0; s < 2000 && apart_m >= GRAIN_m; s++) {
             double closest_m[3];
             dem_run(&world, 1);
-            apart_m = dig_rock_closest(rock, world.grains.motion[0].x_m, closest_m);
+            apart_m =
+                dig_rock_surface_closest(&rock->surface, world.grains.motion[0].x_m, closest_m);
         }
         assert_true(apart_m < GRAIN_m);
         assert_close(world.grains.motion[0].v_mps[2], 0.0, 1e-200);
@@ -382,9 +383,9 @@ TEST(the_bucket_feels_the_rock_it_pushes)
             dem_run(&world, 1);
             felt_Ns += world.on_tool.f_N[0] * world.dt_s;
         }
-        const struct dig_rigid *const body = &world.bodies->obstacles.rock[0].body;
-        assert_true(body->v_mps[0] > 0.1);
-        assert_close(felt_Ns, -body->mass_kg * body->v_mps[0], 1e-6 * body->mass_kg);
+        const struct dig_rock *const rock = &world.bodies->obstacles.rock[0];
+        assert_true(rock->v_mps[0] > 0.1);
+        assert_close(felt_Ns, -rock->mass_kg * rock->v_mps[0], 1e-6 * rock->mass_kg);
         dig_setup_finish(&world);
     }
 }
