@@ -173,25 +173,16 @@ DIG_BOTH static inline void dig_device_add_plate(struct dig_device_contacts *con
                                                  const uint32_t plate, const double body_m[3],
                                                  const double closest_m[3])
 {
-    const struct dig_tool *const tool    = &grain->step->tool;
-    const double                 away[3] = { body_m[0] - closest_m[0], body_m[1] - closest_m[1],
-                                             body_m[2] - closest_m[2] };
-    double                       d[3];
-    double                       a[3];
-    dig_tool_rotate(tool, away, d);
-    dig_tool_rotate(tool, closest_m, a);
-    const double                   v[3] = { tool->vx_mps - tool->w_radps * a[2], 0.0,
-                                            tool->vz_mps + tool->w_radps * a[0] };
-    const struct dig_law *const    law  = &grain->view->tool_law[grain->view->type_of[grain->i]];
+    double d[3];
+    double arm[3];
+    double v[3];
+    dig_tool_separation(&grain->step->tool, body_m, closest_m, d, arm, v);
+    const struct dig_law *const    law = &grain->view->tool_law[grain->view->type_of[grain->i]];
     const struct dig_contact_force p =
         dig_device_add_surface(grain, law, dig_device_plate(grain, plate), d, v);
-    struct dig_wrench *const sum  = &grain->view->on_tool[grain->i];
-    const double             f[3] = { p.fx_N, p.fy_N, p.fz_N };
-    const double             t[3] = { p.jx_Nm, p.jy_Nm, p.jz_Nm };
-    for (int k = 0; k < 3; k++) {
-        sum->f_N[k] -= f[k];
-        sum->t_Nm[k] += t[k] - (a[(k + 1) % 3] * f[(k + 2) % 3] - a[(k + 2) % 3] * f[(k + 1) % 3]);
-    }
+    const double f[3] = { p.fx_N, p.fy_N, p.fz_N };
+    const double t[3] = { p.jx_Nm, p.jy_Nm, p.jz_Nm };
+    dig_wrench_react(f, t, arm, &grain->view->on_tool[grain->i]);
 }
 
 DIG_BOTH static inline void dig_device_add_tool(struct dig_device_contacts *const grain)

@@ -2,6 +2,7 @@
 
 #include "offline_dem/kernel/neighbour.h"
 #include "offline_dem/law/period.h"
+#include "offline_dem/shapes/bucket_surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -138,7 +139,7 @@ enum dig_status dig_input_checks_start(const struct dig_world *const world,
         dig_tool_to_body(tool, x, body_m);
         for (size_t p = 0; p < tool->plates && !inside; p++) {
             double c[3];
-            dig_tool_closest(tool, p, body_m, c);
+            dig_bucket_closest(&tool->bucket, p, body_m, c);
             const double d_m = hypot(hypot(body_m[0] - c[0], body_m[1] - c[1]), body_m[2] - c[2]);
             inside           = d_m < (1.0 - CUT_MOST) * radius_m;
         }

@@ -33,8 +33,7 @@ static void place_rocks(struct dig_ode_bed *const bed)
     for (size_t r = 0; r < bed->rocks; r++) {
         struct dig_rock *const rock = &bed->rock[r];
         const double *const    x    = rock->surface.x_m;
-        memset(rock->f_N, 0, sizeof rock->f_N);
-        memset(rock->t_Nm, 0, sizeof rock->t_Nm);
+        rock->load                  = (struct dig_wrench){ 0 };
         dGeomSetPosition(bed->rock_geom[r], x[0], x[1], x[2]);
         dGeomSetQuaternion(bed->rock_geom[r], rock->surface.q);
     }

@@ -128,18 +128,12 @@ void dig_ode_contacts_wall(void *const data, dGeomID a, dGeomID b)
     add_load_to_i(bed, bed->body[i], &force);
 }
 
-// Adds the reaction of a contact force to the other body, about the point the arm starts from.
 static void add_reaction(const struct dig_contact_force *const p, const double arm_m[3],
-                         double f_N[3], double t_Nm[3])
+                         struct dig_wrench *const sum)
 {
     const double f[3] = { p->fx_N, p->fy_N, p->fz_N };
     const double t[3] = { p->jx_Nm, p->jy_Nm, p->jz_Nm };
-    for (int k = 0; k < 3; k++) {
-        const int next  = (k + 1) % 3;
-        const int other = (k + 2) % 3;
-        f_N[k] -= f[k];
-        t_Nm[k] += t[k] - (arm_m[next] * f[other] - arm_m[other] * f[next]);
-    }
+    dig_wrench_react(f, t, arm_m, sum);
 }
 
 // A grain and a rock whose boxes overlap.
@@ -173,28 +167,25 @@ void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
     kinematics.jz_radps                  = w[2];
     const struct dig_contact_force force = dig_law_apply(law, bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &force);
-    add_reaction(&force, arm_m, rock->f_N, rock->t_Nm);
+    add_reaction(&force, arm_m, &rock->load);
 }
 
 // One contact of a grain with the tool, at a given point with its history.
 static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
                            struct dig_ode_plate_contact *const at)
 {
-    const struct dig_tool *const tool = bed->tool;
-    const double away[3] = { body_m[0] - at->closest_m[0], body_m[1] - at->closest_m[1],
-                             body_m[2] - at->closest_m[2] };
-    double       d[3];
-    double       arm[3];
-    dig_tool_rotate(tool, away, d);
-    dig_tool_rotate(tool, at->closest_m, arm);
+    double d[3];
+    double arm_m[3];
+    double v_mps[3];
+    dig_tool_separation(bed->tool, body_m, at->closest_m, d, arm_m, v_mps);
     struct dig_kinematics kinematics = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
     set_velocity(bed->body[i], NULL, &kinematics);
-    kinematics.vx_mps -= tool->vx_mps - tool->w_radps * arm[2];
-    kinematics.vz_mps -= tool->vz_mps + tool->w_radps * arm[0];
+    kinematics.vx_mps -= v_mps[0];
+    kinematics.vz_mps -= v_mps[2];
     const struct dig_contact_force p =
         dig_law_apply(&bed->tool_law[bed->type_of[i]], bed->dt_s, &kinematics, &at->history);
     add_load_to_i(bed, bed->body[i], &p);
-    add_reaction(&p, arm, bed->on_tool.f_N, bed->on_tool.t_Nm);
+    add_reaction(&p, arm_m, &bed->on_tool);
 }
 
 // A grain in the box about the tool.

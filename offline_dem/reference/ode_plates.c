@@ -19,7 +19,7 @@ static size_t find_candidates(const struct dig_tool *const tool, const double bo
     size_t count = 0;
     for (size_t plate = 0; plate < tool->plates; plate++) {
         struct candidate *const c = &found[count];
-        dig_tool_closest(tool, plate, body_m, c->closest_m);
+        dig_bucket_closest(&tool->bucket, plate, body_m, c->closest_m);
         c->distance_m = dig_bucket_distance(body_m, c->closest_m);
         c->plate      = plate;
         count += c->distance_m < radius_m;
@@ -47,7 +47,7 @@ static const struct candidate *find_closer(const struct dig_tool *const tool,
 {
     for (size_t k = 0; k < count; k++) {
         double on[3];
-        dig_tool_closest(tool, found[k].plate, c->closest_m, on);
+        dig_bucket_closest(&tool->bucket, found[k].plate, c->closest_m, on);
         if (found[k].distance_m < c->distance_m - same_m &&
             dig_bucket_distance(on, c->closest_m) <= same_m) {
             return &found[k];

@@ -75,7 +75,8 @@ DIG_BOTH static inline void dig_bucket_closest_on_polygon(const struct dig_bucke
     }
 }
 
-/// See dig_tool_closest().
+/// The point of the plate (tool.h) closest to body_m: on its face, an edge or a vertex. A point in
+/// the plate is its own closest point.
 DIG_BOTH static inline void dig_bucket_closest(const struct dig_bucket *const bucket,
                                                const size_t plate, const double body_m[3],
                                                double closest_m[3])

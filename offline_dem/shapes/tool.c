@@ -24,12 +24,6 @@ void dig_tool_place(struct dig_tool *const tool, const struct dig_pose pose, con
     tool->w_radps = w_radps;
 }
 
-void dig_tool_closest(const struct dig_tool *const tool, const size_t plate, const double body_m[3],
-                      double closest_m[3])
-{
-    dig_bucket_closest(&tool->bucket, plate, body_m, closest_m);
-}
-
 bool dig_tool_contains(const struct dig_tool *const tool, const double world_m[const 3])
 {
     double body_m[3];

@@ -40,6 +40,19 @@ static inline void dig_wrench_add(const struct dig_wrench *const wrench,
     }
 }
 
+/// Adds the reaction of a contact to the body that is not the grain: of f_N on the grain, and its
+/// own torque t_Nm. arm_m: from where torques are about to the contact.
+DIG_BOTH static inline void dig_wrench_react(const double f_N[3], const double t_Nm[3],
+                                             const double arm_m[3], struct dig_wrench *const sum)
+{
+    for (int k = 0; k < 3; k++) {
+        const int next  = (k + 1) % 3;
+        const int other = (k + 2) % 3;
+        sum->f_N[k] -= f_N[k];
+        sum->t_Nm[k] += t_Nm[k] - (arm_m[next] * f_N[other] - arm_m[other] * f_N[next]);
+    }
+}
+
 struct dig_tool dig_tool_make(const struct dig_bucket *bucket);
 
 /// Sets the tool's pose and velocity.
@@ -68,10 +81,20 @@ DIG_BOTH static inline void dig_tool_rotate(const struct dig_tool *const tool, c
     world[2]       = z;
 }
 
-/// The point of the plate closest to body_m, in body coordinates: on its face, an edge or a vertex.
-/// A point in the plate is its own closest point.
-void dig_tool_closest(const struct dig_tool *tool, size_t plate, const double body_m[3],
-                      double closest_m[3]);
+/// Of a point and the tool's closest to it, in body coordinates: their distance d_m, the arm from
+/// the pin to the closest point and its velocity, in the world's.
+DIG_BOTH static inline void dig_tool_separation(const struct dig_tool *const tool,
+                                                const double body_m[3], const double closest_m[3],
+                                                double d_m[3], double arm_m[3], double v_mps[3])
+{
+    const double away_m[3] = { body_m[0] - closest_m[0], body_m[1] - closest_m[1],
+                               body_m[2] - closest_m[2] };
+    dig_tool_rotate(tool, away_m, d_m);
+    dig_tool_rotate(tool, closest_m, arm_m);
+    v_mps[0] = tool->vx_mps - tool->w_radps * arm_m[2];
+    v_mps[1] = 0.0;
+    v_mps[2] = tool->vz_mps + tool->w_radps * arm_m[0];
+}
 
 /// True where a point of the world lies inside the profile's closed polygon and the width: carried.
 bool dig_tool_contains(const struct dig_tool *tool, const double world_m[3]);

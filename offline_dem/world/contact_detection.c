@@ -2,6 +2,7 @@
 
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/period.h"
+#include "offline_dem/shapes/bucket_surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -264,7 +265,7 @@ static enum dig_status detect_plates(struct dig_world *const w, const uint32_t i
     dig_tool_to_body(tool, x, body_m);
     for (size_t p = 0; p < tool->plates && status == DIG_OK; p++) {
         double c[3];
-        dig_tool_closest(tool, p, body_m, c);
+        dig_bucket_closest(&tool->bucket, p, body_m, c);
         const double d[3] = { body_m[0] - c[0], body_m[1] - c[1], body_m[2] - c[2] };
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m) {
             status = add_surface(w, i, w->walls + p, old_index);

@@ -151,14 +151,6 @@ static void index_loads(struct copy *const c)
     start[0] = 0;
 }
 
-static struct dig_contact_history load_history(const struct dig_contacts *const list,
-                                               const size_t c, const double sign)
-{
-    double *const *const m = list->history;
-    return (struct dig_contact_history){ sign * m[0][c], sign * m[1][c], sign * m[2][c],
-                                         sign * m[3][c], sign * m[4][c], sign * m[5][c] };
-}
-
 static void clear_pairs(void *const context, const size_t first, const size_t end)
 {
     const struct dig_device_view *const v = ((const struct copy *)context)->view;
@@ -174,7 +166,8 @@ static void write_contacts(void *const context, const size_t first, const size_t
     for (size_t c = first; c < end; c++) {
         const uint32_t p = list->slot[c];
         if (p != UINT32_MAX) {
-            v->pair_history[p] = load_history(list, c, v->pair_i[p] == list->i[c] ? 1.0 : -1.0);
+            v->pair_history[p] = dig_contact_history_times(dig_contacts_history(list, c),
+                                                           v->pair_i[p] == list->i[c] ? 1.0 : -1.0);
             v->touching[v->load_index[p][0]] = 1;
             v->touching[v->load_index[p][1]] = 1;
         }
@@ -202,7 +195,7 @@ static void write_list(const struct dig_contacts *const list, const uint32_t fir
         const uint32_t i = list->i[c];
         const uint32_t s = first + list->j[c];
         if (s < end) {
-            v->surface_history[(size_t)s * v->n + i] = load_history(list, c, 1.0);
+            v->surface_history[(size_t)s * v->n + i] = dig_contacts_history(list, c);
             v->surface_mask[i] |= (uint64_t)1 << s;
         }
     }

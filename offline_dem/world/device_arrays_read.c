@@ -11,13 +11,6 @@ struct reading {
     uint32_t                     *count; // [members x DIG_PAIR_LISTS]
 };
 
-static struct dig_contact_history times(const struct dig_contact_history *const h,
-                                        const double                            sign)
-{
-    return (struct dig_contact_history){ sign * h->sx_m,  sign * h->sy_m,  sign * h->sz_m,
-                                         sign * h->mx_Nm, sign * h->my_Nm, sign * h->mz_Nm };
-}
-
 // Whether a pair of the view touches; the list of the world that has it, and whether there j is
 // first.
 static bool is_contact(const struct dig_device_view *const v, const size_t p, size_t *const list,
@@ -60,7 +53,8 @@ static void read_contacts(void *const context, const size_t member)
             list->i[at]                     = swapped ? v->pair_j[p] : v->pair_i[p];
             list->j[at]                     = swapped ? v->pair_i[p] : v->pair_j[p];
             list->slot[at]                  = DIG_NO_SLOT;
-            dig_contacts_set_history(list, at, times(&v->pair_history[p], swapped ? -1.0 : 1.0));
+            dig_contacts_set_history(
+                list, at, dig_contact_history_times(v->pair_history[p], swapped ? -1.0 : 1.0));
         }
     }
 }

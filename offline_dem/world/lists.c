@@ -78,13 +78,10 @@ static void find_slots(void *const context, const size_t first, const size_t end
         if (slot == DIG_NO_SLOT) {
             slot = find_slot(near, j, i);
             if (r->like && slot != DIG_NO_SLOT) {
-                list->i[c]                         = j;
-                list->j[c]                         = i;
-                const struct dig_contact_history h = dig_contacts_history(list, c);
-                dig_contacts_set_history(list, c,
-                                         (struct dig_contact_history){ -h.sx_m, -h.sy_m, -h.sz_m,
-                                                                       -h.mx_Nm, -h.my_Nm,
-                                                                       -h.mz_Nm });
+                list->i[c] = j;
+                list->j[c] = i;
+                dig_contacts_set_history(
+                    list, c, dig_contact_history_times(dig_contacts_history(list, c), -1.0));
             }
         }
         list->slot[c] = slot;

@@ -189,24 +189,18 @@ static void apply_block(struct dig_world *const world, struct dig_obstacles *con
                         const double arm_m[DIG_BLOCK][3])
 {
     for (size_t c = 0; c < count; c++) {
-        struct dig_rock *const rock = &o->rock[list->j[first + c]];
-        const double *const    a    = arm_m[c];
-        const double           f[3] = { block->out[0][c], block->out[1][c], block->out[2][c] };
-        const double           t[3] = { block->out[3][c], block->out[4][c], block->out[5][c] };
-        dig_grains_add_load(&world->grains, list->i[first + c], f, t);
-        for (int k = 0; k < 3; k++) {
-            rock->f_N[k] -= block->out[k][c];
-            rock->t_Nm[k] += block->out[6 + k][c] - (a[(k + 1) % 3] * block->out[(k + 2) % 3][c] -
-                                                     a[(k + 2) % 3] * block->out[(k + 1) % 3][c]);
-        }
+        const double f[3]        = { block->out[0][c], block->out[1][c], block->out[2][c] };
+        const double on_grain[3] = { block->out[3][c], block->out[4][c], block->out[5][c] };
+        const double t[3]        = { block->out[6][c], block->out[7][c], block->out[8][c] };
+        dig_grains_add_load(&world->grains, list->i[first + c], f, on_grain);
+        dig_wrench_react(f, t, arm_m[c], &o->rock[list->j[first + c]].load);
     }
 }
 
 void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *const world)
 {
     for (size_t r = 0; r < o->rocks; r++) {
-        memset(o->rock[r].f_N, 0, sizeof o->rock[r].f_N);
-        memset(o->rock[r].t_Nm, 0, sizeof o->rock[r].t_Nm);
+        o->rock[r].load = (struct dig_wrench){ 0 };
     }
     for (size_t type = 0; type < world->grains.types; type++) {
         struct dig_contacts *const list     = &o->contact[type];

@@ -14,7 +14,7 @@ struct dig_rock {
     bool                    movable;
     double                  mass_kg; // 0: fixed
     double                  v_mps[3], w_radps[3];
-    double                  f_N[3], t_Nm[3]; // about its centre
+    struct dig_wrench       load; // about its centre
 };
 
 struct dig_obstacles {

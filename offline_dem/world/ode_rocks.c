@@ -1,5 +1,6 @@
 #include "offline_dem/world/ode_rocks.h"
 
+#include "offline_dem/shapes/bucket_surface.h"
 #include "offline_dem/world/ode_scene_private.h"
 
 #include <math.h>
@@ -126,7 +127,7 @@ static void collide_plates(struct rock_step *const m, const struct dig_tool *con
     dig_tool_to_body(tool, rock->surface.x_m, body_m);
     for (size_t p = 0; p < tool->plates; p++) {
         double c[3];
-        dig_tool_closest(tool, p, body_m, c);
+        dig_bucket_closest(&tool->bucket, p, body_m, c);
         const double d_m = hypot(hypot(body_m[0] - c[0], body_m[1] - c[1]), body_m[2] - c[2]);
         if (d_m < least_m) {
             least_m = d_m;
@@ -136,15 +137,13 @@ static void collide_plates(struct rock_step *const m, const struct dig_tool *con
     if (!(least_m < rock->surface.half_m[0]) || !(least_m > 0.0)) {
         return;
     }
-    const double away[3] = { body_m[0] - closest[0], body_m[1] - closest[1],
-                             body_m[2] - closest[2] };
-    double       normal[3];
-    double       arm_m[3];
-    dig_tool_rotate(tool, away, normal);
-    dig_tool_rotate(tool, closest, arm_m);
+    double d_m[3];
+    double arm_m[3];
+    double v_mps[3];
+    dig_tool_separation(tool, body_m, closest, d_m, arm_m, v_mps);
     dContactGeom at = { .depth = rock->surface.half_m[0] - least_m };
     for (int k = 0; k < 3; k++) {
-        at.normal[k] = normal[k] / least_m;
+        at.normal[k] = d_m[k] / least_m;
         at.pos[k]    = arm_m[k];
     }
     at.pos[0] += tool->pose.x_m;
@@ -192,8 +191,9 @@ void dig_ode_rocks_step(struct dig_ode_scene *const ode, const struct dig_tool *
         } else if (tool != NULL) {
             collide_bucket(&m, i);
         }
-        dBodyAddForce(ode->body[i], rock[i].f_N[0], rock[i].f_N[1], rock[i].f_N[2]);
-        dBodyAddTorque(ode->body[i], rock[i].t_Nm[0], rock[i].t_Nm[1], rock[i].t_Nm[2]);
+        dBodyAddForce(ode->body[i], rock[i].load.f_N[0], rock[i].load.f_N[1], rock[i].load.f_N[2]);
+        dBodyAddTorque(ode->body[i], rock[i].load.t_Nm[0], rock[i].load.t_Nm[1],
+                       rock[i].load.t_Nm[2]);
     }
     dWorldStep(ode->world, dt_s);
     for (size_t i = 0; i < m.joints; i++) {

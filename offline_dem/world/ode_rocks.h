@@ -16,7 +16,7 @@ struct dig_rock_contact_law {
 /// Replaces the scene's rocks by these, at their poses.
 void dig_ode_rocks_set(struct dig_ode_scene *ode, size_t rocks, const struct dig_rock rock[]);
 
-/// One step of every movable rock under the loads rock[].f_N and .t_Nm; their bodies are read back.
+/// One step of every movable rock under the loads rock[].load; their bodies are read back.
 /// tool NULL: no bucket. Velocities stand half a step behind positions, as the grains'.
 void dig_ode_rocks_step(struct dig_ode_scene *ode, const struct dig_tool *tool,
                         const struct dig_rock_contact_law law[], double dt_s,

@@ -51,7 +51,7 @@ static void resolve_edges(const struct dig_tool *const tool, const double radius
             }
             // Does p's closest point lie on q as well?
             double on_q[3];
-            dig_tool_closest(tool, near->plate[q], near->closest_m[p], on_q);
+            dig_bucket_closest(&tool->bucket, near->plate[q], near->closest_m[p], on_q);
             if (dig_bucket_distance(on_q, near->closest_m[p]) > same_m) {
                 continue;
             }
@@ -84,13 +84,9 @@ static void fill_plate(const struct dig_tool *const tool, const double body_m[3]
                        const double closest_m[3], const struct dig_motion *const m, const size_t c,
                        struct dig_block *const block, double arm_m[3])
 {
-    const double away[3] = { body_m[0] - closest_m[0], body_m[1] - closest_m[1],
-                             body_m[2] - closest_m[2] };
-    double       d[3];
-    dig_tool_rotate(tool, away, d);
-    dig_tool_rotate(tool, closest_m, arm_m);
-    const double v[3] = { tool->vx_mps - tool->w_radps * arm_m[2], 0.0,
-                          tool->vz_mps + tool->w_radps * arm_m[0] };
+    double d[3];
+    double v[3];
+    dig_tool_separation(tool, body_m, closest_m, d, arm_m, v);
     fill_contact(block, c, m, d, v);
 }
 
@@ -111,7 +107,7 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
     while (c + used < count && list->i[first + c + used] == i) {
         const size_t k     = near.count;
         const size_t plate = list->j[first + c + used] - w->walls;
-        dig_tool_closest(w->tool, plate, body_m, near.closest_m[k]);
+        dig_bucket_closest(&w->tool->bucket, plate, body_m, near.closest_m[k]);
         near.contact[k]    = first + c + used;
         near.plate[k]      = plate;
         near.distance_m[k] = dig_bucket_distance(body_m, near.closest_m[k]);
@@ -149,12 +145,7 @@ static void add_loads(struct dig_world *const w, const struct dig_contacts *cons
             t[k]        = block->out[6 + k][c];
         }
         dig_grains_add_load(&w->grains, list->i[first + c], f, on_grain);
-        const double *const a = arm_m[c];
-        for (int k = 0; k < 3; k++) {
-            sum->f_N[k] -= f[k];
-            sum->t_Nm[k] +=
-                t[k] - (a[(k + 1) % 3] * f[(k + 2) % 3] - a[(k + 2) % 3] * f[(k + 1) % 3]);
-        }
+        dig_wrench_react(f, t, arm_m[c], sum);
     }
 }
 

@@ -243,7 +243,7 @@ TEST(a_grain_rests_on_a_rock_and_the_rock_bears_it)
         struct dig_world world    = make_world(&scene, 1, at, no);
         dem_run(&world, 20000);
         const struct dig_rock *const rock = &world.bodies->obstacles.rock[0];
-        assert_close(rock->f_N[2], -GRAIN_kg * GRAVITY, 1e-9);
+        assert_close(rock->load.f_N[2], -GRAIN_kg * GRAVITY, 1e-9);
         assert_close(world.grains.motion[0].x_m[2], 0.32 + GRAIN_m, 0.01 * GRAIN_m);
         assert_true(world.grains.motion[0].x_m[2] < 0.32 + GRAIN_m);
         dig_setup_finish(&world);

@@ -4,6 +4,7 @@
 #include "tests/dem_fixture.h"
 
 #include "offline_dem/law/random.h"
+#include "offline_dem/shapes/bucket_surface.h"
 #include "offline_dem/world/ode_scene.h"
 #include "offline_dem/world/ode_scene_private.h"
 #include "tests/offline_dem/rig_bucket.h"
@@ -72,7 +73,7 @@ TEST(odes_collision_agrees_where_it_sees_the_plates)
         int          near = 0;
         for (size_t plate = 0; plate < tool.plates; plate++) {
             double c[3];
-            dig_tool_closest(&tool, plate, body, c);
+            dig_bucket_closest(&tool.bucket, plate, body, c);
             const double d = distance(body, c);
             near += d < GRAIN_m;
             if (d < best) {

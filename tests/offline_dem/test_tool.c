@@ -3,6 +3,7 @@
 #include "tests/dem_fixture.h"
 
 #include "offline_dem/law/random.h"
+#include "offline_dem/shapes/bucket_surface.h"
 #include "offline_dem/world/surfaces.h"
 #include "tests/offline_dem/rig_bucket.h"
 
@@ -54,7 +55,7 @@ TEST(the_closest_point_is_the_closest_of_all)
                               dig_random_between(&random, -0.11, 0.02) };
         for (size_t plate = 0; plate < tool.plates; plate++) {
             double c[3];
-            dig_tool_closest(&tool, plate, p, c);
+            dig_bucket_closest(&tool.bucket, plate, p, c);
             // Sampled points are at most 0.4 mm from any point of the plate.
             const double sampled = sampled_distance(plate, p);
             assert_true(distance(p, c) <= sampled + 1e-12);
