@@ -29,13 +29,7 @@ static enum dig_status find_missing(struct dig_store *const      store,
                                     const struct dig_plan *const plan, struct dig_job *const job,
                                     struct dig_error *const error)
 {
-    struct dig_run_origin key = {
-        .gravel    = job->gravel,
-        .magnitude = job->magnitude,
-        .approach  = job->approach,
-        .packing   = job->packing,
-    };
-    memcpy(key.effect, job->effect, sizeof key.effect);
+    struct dig_run_origin key = job->origin;
     for (size_t t = 0; t < plan->trajectories; t++) {
         bool there                   = false;
         key.trajectory               = plan->trajectory[t];
@@ -52,14 +46,14 @@ static enum dig_status find_missing(struct dig_store *const      store,
 
 static struct dig_job job_of(const struct dig_plan_point *const point, const size_t packing)
 {
-    struct dig_job job = {
-        .gravel    = point->gravel,
-        .magnitude = point->magnitude,
-        .approach  = point->approach,
-        .packing   = packing,
-        .seed      = dig_bed_seed(&point->gravel, packing),
-    };
-    memcpy(job.effect, point->effect, sizeof job.effect);
+    struct dig_job job = { .origin = {
+                               .gravel    = point->gravel,
+                               .magnitude = point->magnitude,
+                               .approach  = point->approach,
+                               .packing   = packing,
+                               .seed      = dig_bed_seed(&point->gravel, packing),
+                           } };
+    memcpy(job.origin.effect, point->effect, sizeof job.origin.effect);
     return job;
 }
 

@@ -36,14 +36,9 @@ struct dig_plan {
 
 /// One bed and the digs it still lacks.
 struct dig_job {
-    struct dig_gravel   gravel;
-    char                effect[DIG_NAME_SIZE];
-    double              magnitude;
-    struct dig_approach approach;
-    size_t              packing;
-    uint64_t            seed;
-    size_t              digs;
-    size_t              trajectory[DIG_TRAJECTORY_MAX]; // [digs]
+    struct dig_run_origin origin; // what all its digs have in common
+    size_t                digs;
+    size_t                trajectory[DIG_TRAJECTORY_MAX]; // [digs]
 };
 
 struct dig_queue {

@@ -2,7 +2,6 @@
 
 #include "core/text.h"
 #include "offline_dem/dig/checked_pour.h"
-#include "offline_dem/dig/variant.h"
 #include "offline_dem/sweep/worker.h"
 
 #include <assert.h>
@@ -10,7 +9,6 @@
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #define ATTEMPTS_MAX   2 // of a bed whose worker was killed
@@ -20,12 +18,10 @@
 struct dig_engine dig_engine_kernel(void)
 {
     return (struct dig_engine){
-        .name       = "kernel",
-        .version    = DIG_VERSION "+" DIG_NUMERICS,
-        .pour       = dig_bed_pour_checked,
-        .dig        = dig_dig_run,
-        .bed_finish = dig_bed_finish,
-        .vary       = dig_variant_make,
+        .name    = "kernel",
+        .version = DIG_VERSION "+" DIG_NUMERICS,
+        .pour    = dig_bed_pour_checked,
+        .dig     = dig_dig_run,
     };
 }
 
@@ -60,16 +56,17 @@ static void record_failure(struct sweep *const s, const struct dig_job *const jo
 {
     s->state->failed += digs;
     if (s->status == DIG_OK) {
-        char effect[64] = "";
-        char how[DIG_APPROACH_TEXT_SIZE];
-        dig_approach_text(&job->approach, how);
-        if (job->effect[0] != '\0') {
-            (void)snprintf(effect, sizeof effect, ", %s %g", job->effect, job->magnitude);
+        const struct dig_run_origin *const o          = &job->origin;
+        char                               effect[64] = "";
+        char                               how[DIG_APPROACH_TEXT_SIZE];
+        dig_approach_text(&o->approach, how);
+        if (o->effect[0] != '\0') {
+            (void)snprintf(effect, sizeof effect, ", %s %g", o->effect, o->magnitude);
         }
         s->status = dig_error_set(s->error, DIG_EIO,
                                   "friction %g, rolling %g, %g kg/m3%s%s, packing %zu: %.400s",
-                                  job->gravel.value[0], job->gravel.value[1], job->gravel.value[2],
-                                  effect, how, job->packing, why);
+                                  o->gravel.value[0], o->gravel.value[1], o->gravel.value[2],
+                                  effect, how, o->packing, why);
     }
 }
 
@@ -119,17 +116,10 @@ static enum dig_status store_curve(struct sweep *const s, struct dig_worker *con
                                    const struct dig_message *const m,
                                    struct dig_force_row *const rows, struct dig_error *const error)
 {
-    struct dig_run_origin origin = {
-        .gravel     = w->job.gravel,
-        .magnitude  = w->job.magnitude,
-        .approach   = w->job.approach,
-        .packing    = w->job.packing,
-        .trajectory = m->trajectory,
-        .seed       = w->job.seed,
-        .grains     = m->grains,
-        .wall_s     = m->wall_s,
-    };
-    memcpy(origin.effect, w->job.effect, sizeof origin.effect);
+    struct dig_run_origin origin = w->job.origin;
+    origin.trajectory            = m->trajectory;
+    origin.grains                = m->grains;
+    origin.wall_s                = m->wall_s;
     (void)snprintf(origin.engine, sizeof origin.engine, "%s", s->engine->name);
     (void)snprintf(origin.version, sizeof origin.version, "%s", s->engine->version);
     dig_text_utc(time(NULL), sizeof origin.made_utc, origin.made_utc);

@@ -11,7 +11,6 @@
 #ifndef DIG_OFFLINE_DEM_SWEEP_SWEEP_H
 #define DIG_OFFLINE_DEM_SWEEP_SWEEP_H
 
-#include "core/effect.h"
 #include "core/error.h"
 #include "offline_dem/dig/dig.h"
 #include "tables/queue.h"
@@ -20,8 +19,7 @@
 #include <signal.h>
 
 /// An engine as functions, called with its stepper; tests use one that takes no time. version
-/// differs between two builds that may compute differently. vary applies an effect to a scene
-/// (offline_dem/dig/variant.h); NULL: the engine has no effects.
+/// differs between two builds that may compute differently.
 struct dig_engine {
     const char        *name;
     const char        *version;
@@ -35,9 +33,6 @@ struct dig_engine {
                            const struct dig_trajectory *trajectory, const char *vtk_dir,
                            const struct dig_progress *progress, struct dig_recording *recording,
                            struct dig_error *error);
-    void (*bed_finish)(struct dig_bed *bed);
-    enum dig_status (*vary)(const struct dig_scene *scene, enum dig_effect_id effect,
-                            double magnitude, struct dig_scene *varied, struct dig_error *error);
 };
 
 /// The grain kernel: offline_dem/dig/dig.h. Its version is the release and, behind a plus, a hash
@@ -77,5 +72,8 @@ DIG_MUST_CHECK enum dig_status
 dig_sweep_run(const struct dig_scene *scene, const struct dig_plan *plan,
               const struct dig_engine *engine, const struct dig_sweep_options *options,
               struct dig_store *store, struct dig_sweep_state *state, struct dig_error *error);
+
+/// Seconds on the monotonic clock.
+double dig_sweep_now_s(void);
 
 #endif // DIG_OFFLINE_DEM_SWEEP_SWEEP_H

@@ -1,5 +1,7 @@
 #include "offline_dem/sweep/worker.h"
 
+#include "offline_dem/dig/variant.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -103,11 +105,12 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
         struct dig_recording  recording = { 0 };
         struct dig_error      error     = { "" };
         enum dig_status status = dig_approach_make(child->scene, &child->scene->trajectory[at],
-                                                   &child->job->approach, &t, &error);
+                                                   &child->job->origin.approach, &t, &error);
         if (status == DIG_OK) {
             child->current_s = dig_trajectory_duration_s(&t);
-            status = child->engine->dig(&child->engine->stepper, child->scene, &child->job->gravel,
-                                        bed, &t, NULL, progress, &recording, &error);
+            status           = child->engine->dig(&child->engine->stepper, child->scene,
+                                                  &child->job->origin.gravel, bed, &t, NULL, progress,
+                                                  &recording, &error);
         }
         if (status != DIG_OK) {
             send_failure(child, status, &error);
@@ -135,17 +138,13 @@ static bool dig_all(struct child *const child, const struct dig_progress *const 
 static enum dig_status apply_effect(struct child *const child, struct dig_scene *const varied,
                                     struct dig_error *const error)
 {
-    const struct dig_job *const job    = child->job;
-    const int                   effect = dig_effect_find(job->effect);
-    if (job->effect[0] == '\0') {
+    const struct dig_run_origin *const o = &child->job->origin;
+    if (o->effect[0] == '\0') {
         return DIG_OK;
     }
-    if (effect < 0 || child->engine->vary == NULL) {
-        return dig_error_set(error, DIG_EINVAL, "effect \"%s\": the engine %s knows no such",
-                             job->effect, child->engine->name);
-    }
-    const enum dig_status status = child->engine->vary(child->scene, (enum dig_effect_id)effect,
-                                                       job->magnitude, varied, error);
+    const enum dig_effect_id effect = (enum dig_effect_id)dig_effect_find(o->effect);
+    const enum dig_status    status =
+        dig_variant_make(child->scene, effect, o->magnitude, varied, error);
     if (status == DIG_OK) {
         child->scene = varied;
     }
@@ -163,8 +162,9 @@ static void work(struct child *const child)
     child->total_s                   = job_s(child->scene, child->job);
     child->current_s                 = pouring_s(child->scene);
     if (status == DIG_OK) {
-        status = child->engine->pour(&child->engine->stepper, child->scene, &child->job->gravel,
-                                     child->job->seed, &progress, &bed, &error);
+        status =
+            child->engine->pour(&child->engine->stepper, child->scene, &child->job->origin.gravel,
+                                child->job->origin.seed, &progress, &bed, &error);
     }
     if (status != DIG_OK) {
         send_failure(child, status, &error);
@@ -175,7 +175,7 @@ static void work(struct child *const child)
         const struct dig_message end = { .kind = DIG_MESSAGE_END };
         send_all(child->fd, &end, sizeof end);
     }
-    child->engine->bed_finish(&bed);
+    dig_bed_finish(&bed);
 }
 
 // Runs in the child and never returns. _exit leaves the parent's buffers and handlers alone.

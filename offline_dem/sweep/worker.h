@@ -58,7 +58,4 @@ bool dig_worker_next(struct dig_worker *worker, struct dig_message *message,
 /// Waits for the process and frees the worker. Returns the signal that killed it, or 0.
 int dig_worker_finish(struct dig_worker *worker);
 
-/// Seconds on the monotonic clock.
-double dig_sweep_now_s(void);
-
 #endif // DIG_OFFLINE_DEM_SWEEP_WORKER_H

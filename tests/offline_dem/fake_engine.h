@@ -96,7 +96,6 @@ fake_dig(const struct dig_stepper *const stepper, const struct dig_scene *const 
          struct dig_error *const error)
 {
     (void)stepper;
-    (void)scene;
     assert_null(vtk_dir);
     leave_mark('d');
     if (mischief == DIE_ONCE && t->phases == 2 && is_first()) {
@@ -115,7 +114,7 @@ fake_dig(const struct dig_stepper *const stepper, const struct dig_scene *const 
         (void)progress->report(progress->context, i, 6000);
     }
     const size_t               rows = t->phases == 1 ? 400 : 200;
-    const double               my   = moment_of(gravel, bed->grains, t);
+    const double               my   = moment_of(gravel, bed->grains, t) + scene->laws.cohesion_Jpm3;
     const struct dig_recording made = fixture_recording(
         rows, mischief == GIVE_NAN && is_marked_gravel(gravel) ? (double)NAN : my);
     recording->row = malloc(rows * sizeof *recording->row);
@@ -125,32 +124,9 @@ fake_dig(const struct dig_stepper *const stepper, const struct dig_scene *const 
     return DIG_OK;
 }
 
-static inline void fake_bed_finish(struct dig_bed *const bed)
-{
-    *bed = (struct dig_bed){ 0 };
-}
-
-// The effect sets the first trajectory's angle: any change that shows.
-static inline enum dig_status fake_vary(const struct dig_scene *const scene,
-                                        const enum dig_effect_id effect, const double magnitude,
-                                        struct dig_scene *const varied,
-                                        struct dig_error *const error)
-{
-    if (magnitude > 90.0) {
-        return dig_error_set(error, DIG_EINVAL, "%s %g: too much", dig_effect_name(effect),
-                             magnitude);
-    }
-    *varied                          = *scene;
-    varied->trajectory[0].theta0_rad = magnitude;
-    return DIG_OK;
-}
-
-static const struct dig_engine engine = { .name       = "fake",
-                                          .version    = "3.1",
-                                          .pour       = fake_pour,
-                                          .dig        = fake_dig,
-                                          .bed_finish = fake_bed_finish,
-                                          .vary       = fake_vary };
+static const struct dig_engine engine = {
+    .name = "fake", .version = "3.1", .pour = fake_pour, .dig = fake_dig
+};
 
 // Two frictions by three rolling frictions.
 static inline struct dig_plan plan_of(const size_t packings)

@@ -48,7 +48,7 @@ static void digs_agree(const struct dig_scene *const scene)
     }
     dig_recording_finish(&ours);
     dig_recording_finish(&theirs);
-    ode.bed_finish(&bed);
+    dig_bed_finish(&bed);
 }
 
 TEST(a_short_dig_gives_the_kernels_curve)

@@ -101,14 +101,14 @@ TEST_WITH(beds_that_cannot_be_dug_are_told_and_the_others_are_dug, before_each, 
     assert_int_equal(check_table("nan.sqlite").runs, DIGS_A_PACKING);
 }
 
-// The moment is that of the varied scene: the engine was given it.
+// The moment tells the scene's cohesion: the engine was given the varied one.
 TEST_WITH(an_effect_is_put_into_the_scene_of_its_beds_alone, before_each, NULL)
 {
     const struct dig_scene      scene    = fixture_scene();
     const struct dig_plan_point points[] = {
         { .gravel = { { .3, .2, 2500 } }, .packings = 1 },
         { .gravel = { { .3, .2, 2500 } }, .effect = "cohesion", .magnitude = 7, .packings = 1 },
-        { .gravel = { { .3, .2, 2500 } }, .effect = "cohesion", .magnitude = 99, .packings = 1 },
+        { .gravel = { { .3, .2, 2500 } }, .effect = "grain_shape", .magnitude = 99, .packings = 1 },
     };
     const struct dig_plan          plan    = { .points = 3, .point = points, .trajectories = 1 };
     const struct dig_sweep_options options = { .workers = 2, .time_limit_s = (double)INFINITY };
@@ -116,7 +116,8 @@ TEST_WITH(an_effect_is_put_into_the_scene_of_its_beds_alone, before_each, NULL)
     struct dig_error               error   = { "" };
     struct dig_store              *store   = fixture_create("vary.sqlite");
     assert_int_equal(dig_sweep_run(&scene, &plan, &engine, &options, store, &st, &error), DIG_EIO);
-    assert_contains(error.text, "2500 kg/m3, cohesion 99, packing 0: cohesion 99: too much");
+    assert_contains(error.text,
+                    "2500 kg/m3, grain_shape 99, packing 0: grain_shape: 99 1, expected");
     assert_int_equal(st.digs_done, 2);
     assert_int_equal(st.failed, 1);
     dig_store_close(store);

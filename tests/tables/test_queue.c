@@ -37,15 +37,15 @@ TEST(every_point_has_a_first_bed_before_any_has_a_second)
     assert_int_equal(queue.digs_total, 36);
     assert_int_equal(queue.digs_done, 0);
     for (size_t i = 0; i < queue.jobs; i++) {
-        assert_int_equal(queue.job[i].packing, i / 6);
+        assert_int_equal(queue.job[i].origin.packing, i / 6);
         assert_int_equal(queue.job[i].digs, 2);
         assert_int_equal(queue.job[i].trajectory[0], 1);
         assert_int_equal(queue.job[i].trajectory[1], 0);
         for (size_t k = 0; k < i; k++) {
-            assert_true(memcmp(&queue.job[i].gravel, &queue.job[k].gravel,
-                               sizeof queue.job[i].gravel) != 0 ||
-                        queue.job[i].packing != queue.job[k].packing);
-            assert_true(queue.job[i].seed != queue.job[k].seed);
+            assert_true(memcmp(&queue.job[i].origin.gravel, &queue.job[k].origin.gravel,
+                               sizeof queue.job[i].origin.gravel) != 0 ||
+                        queue.job[i].origin.packing != queue.job[k].origin.packing);
+            assert_true(queue.job[i].origin.seed != queue.job[k].origin.seed);
         }
     }
     dig_queue_finish(&queue);
@@ -69,9 +69,10 @@ TEST(what_the_table_holds_is_not_dug_again)
     for (size_t i = 0; i < queue.jobs; i++) {
         const struct dig_job *const job = &queue.job[i];
         digs += job->digs;
-        assert_false(job->gravel.value[0] < .4 && job->gravel.value[1] > .15 &&
-                     job->gravel.value[1] < .3 && job->packing == 0);
-        if (job->gravel.value[0] > .4 && job->gravel.value[1] > .3 && job->packing == 1) {
+        assert_false(job->origin.gravel.value[0] < .4 && job->origin.gravel.value[1] > .15 &&
+                     job->origin.gravel.value[1] < .3 && job->origin.packing == 0);
+        if (job->origin.gravel.value[0] > .4 && job->origin.gravel.value[1] > .3 &&
+            job->origin.packing == 1) {
             assert_int_equal(job->digs, 1);
             assert_int_equal(job->trajectory[0], 0);
         }
@@ -107,14 +108,14 @@ TEST(points_differ_in_effect_magnitude_and_packings)
     assert_int_equal(queue.digs_total, 5);
     assert_int_equal(queue.digs_done, 2);
     assert_int_equal(queue.jobs, 3);
-    assert_string_equal(queue.job[0].effect, "cohesion");
-    assert_close(queue.job[0].magnitude, 10.0, 0.0);
-    assert_int_equal(queue.job[0].packing, 0);
-    assert_close(queue.job[1].magnitude, 20.0, 0.0);
-    assert_int_equal(queue.job[1].packing, 0);
-    assert_close(queue.job[2].magnitude, 10.0, 0.0);
-    assert_int_equal(queue.job[2].packing, 2);
-    assert_true(queue.job[0].seed == dig_bed_seed(&points[0].gravel, 0)); // the plain bed's
+    assert_string_equal(queue.job[0].origin.effect, "cohesion");
+    assert_close(queue.job[0].origin.magnitude, 10.0, 0.0);
+    assert_int_equal(queue.job[0].origin.packing, 0);
+    assert_close(queue.job[1].origin.magnitude, 20.0, 0.0);
+    assert_int_equal(queue.job[1].origin.packing, 0);
+    assert_close(queue.job[2].origin.magnitude, 10.0, 0.0);
+    assert_int_equal(queue.job[2].origin.packing, 2);
+    assert_true(queue.job[0].origin.seed == dig_bed_seed(&points[0].gravel, 0)); // the plain bed's
     dig_queue_finish(&queue);
     dig_store_close(store);
 }
@@ -133,21 +134,21 @@ TEST(the_shards_of_a_plan_are_all_of_it_once)
         for (size_t i = 0; i < part.jobs; i++) {
             size_t times = 0;
             for (size_t k = 0; k < whole.jobs; k++) {
-                times += part.job[i].seed == whole.job[k].seed ? 1 : 0;
+                times += part.job[i].origin.seed == whole.job[k].origin.seed ? 1 : 0;
             }
             assert_int_equal(times, 1);
             seen++;
         }
         // What a shard holds does not depend on what is done.
         if (plan.shard == 2) {
-            const struct dig_job *const first = &part.job[0];
+            const struct dig_run_origin *const first = &part.job[0].origin;
             fixture_put(store, first->gravel.value[0], first->gravel.value[1], first->packing, 0,
                         1);
             fixture_put(store, first->gravel.value[0], first->gravel.value[1], first->packing, 1,
                         1);
             struct dig_queue later = queue_of(store, &plan);
             assert_int_equal(later.jobs, part.jobs - 1);
-            assert_true(later.job[0].seed == part.job[1].seed);
+            assert_true(later.job[0].origin.seed == part.job[1].origin.seed);
             dig_queue_finish(&later);
         }
         dig_queue_finish(&part);

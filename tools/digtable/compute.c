@@ -33,7 +33,7 @@ static int report_dig(void *const context, const double done_s, const double tot
     struct dig_progress_report *const w = context;
     if (dig_progress_is_due(&w->line)) {
         char         left[32];
-        const double elapsed_s = dig_progress_now_s() - w->from_s;
+        const double elapsed_s = dig_sweep_now_s() - w->from_s;
         const double left_s = done_s > 0.0 ? elapsed_s * (total_s - done_s) / done_s : (double)NAN;
         (void)fprintf(stderr, "%s%s: %.2f of %.2f s simulated, %s left",
                       dig_progress_start(&w->line), w->what, done_s, total_s,
@@ -70,8 +70,8 @@ static enum dig_status get_bed(const struct dig_arguments *const a,
         *bed = read;
         return DIG_OK;
     }
-    struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "bed",
-                                         a->stop };
+    struct dig_progress_report watch    = { dig_progress_line(a->quiet), dig_sweep_now_s(), "bed",
+                                            a->stop };
     const struct dig_progress  progress = { report_dig, &watch };
     const struct dig_engine    engine   = dig_cli_engine(a);
     const enum dig_status      status   = name_scene(
@@ -88,8 +88,8 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
               const struct dig_gravel *const gravel, const struct dig_bed *const bed,
               const struct dig_trajectory *const trajectory, struct dig_error *const error)
 {
-    struct dig_progress_report watch = { dig_progress_line(a->quiet), dig_progress_now_s(), "dig",
-                                         a->stop };
+    struct dig_progress_report watch     = { dig_progress_line(a->quiet), dig_sweep_now_s(), "dig",
+                                             a->stop };
     const struct dig_progress  progress  = { report_dig, &watch };
     const struct dig_engine    engine    = dig_cli_engine(a);
     struct dig_recording       recording = { 0 };
@@ -115,7 +115,7 @@ dig_and_write(const struct dig_arguments *const a, const struct dig_scene *const
     if (status == DIG_OK && !a->quiet) {
         (void)fputs(dig_progress_start(&watch.line), stderr);
         dig_text_print(stderr, "%zu grains, %zu samples, %.1f s -> %s", bed->grains, recording.rows,
-                       dig_progress_now_s() - watch.from_s, a->output);
+                       dig_sweep_now_s() - watch.from_s, a->output);
         dig_progress_end(&watch.line, true);
     }
     dig_recording_finish(&recording);
@@ -247,7 +247,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
     struct dig_error        error  = { "" };
     struct dig_store       *store  = NULL;
     const struct dig_engine engine = dig_cli_engine(a);
-    enum dig_status         status = dig_plan_check(plan, scene, &engine, &error);
+    enum dig_status         status = dig_plan_check(plan, scene, &error);
     if (status == DIG_OK) {
         status = dig_store_create(a->output, scene, &store, &error);
     }

@@ -3,6 +3,7 @@
 #include "core/sha256.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig/input_checks.h"
+#include "offline_dem/dig/variant.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -240,13 +241,11 @@ static enum dig_status check_approach(const struct dig_plan *const       plan,
     return DIG_OK;
 }
 
-enum dig_status dig_plan_check(const struct dig_plan *const   plan,
-                               const struct dig_scene *const  scene,
-                               const struct dig_engine *const engine, struct dig_error *const error)
+enum dig_status dig_plan_check(const struct dig_plan *const  plan,
+                               const struct dig_scene *const scene, struct dig_error *const error)
 {
     for (size_t i = 0; i < plan->points; i++) {
-        const struct dig_plan_point *const p      = &plan->point[i];
-        const int                          effect = dig_effect_find(p->effect);
+        const struct dig_plan_point *const p = &plan->point[i];
         if (!dig_approach_is_plain(&p->approach)) {
             const enum dig_status status = check_approach(plan, p, scene, error);
             if (status != DIG_OK) {
@@ -256,13 +255,10 @@ enum dig_status dig_plan_check(const struct dig_plan *const   plan,
         if (p->effect[0] == '\0') {
             continue;
         }
-        if (effect < 0 || engine->vary == NULL) {
-            return dig_error_set(error, DIG_EINVAL, "effects: the engine %s knows no \"%s\"",
-                                 engine->name, p->effect);
-        }
-        struct dig_scene      varied;
-        const enum dig_status status =
-            engine->vary(scene, (enum dig_effect_id)effect, p->magnitude, &varied, error);
+        struct dig_scene         varied;
+        const enum dig_effect_id effect = (enum dig_effect_id)dig_effect_find(p->effect);
+        const enum dig_status    status =
+            dig_variant_make(scene, effect, p->magnitude, &varied, error);
         if (status != DIG_OK) {
             return status;
         }

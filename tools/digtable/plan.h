@@ -25,11 +25,9 @@ DIG_MUST_CHECK enum dig_status dig_plan_read(const char *scene_path, const char 
 void dig_plan_hash(const struct dig_plan *plan, const struct dig_scene *scene,
                    const struct dig_engine *engine, char hex[65]);
 
-/// Refuses a point whose effect the engine cannot put into the scene at that magnitude, and one
-/// whose approach takes a trajectory of the plan out of the box or starts it in the ground.
-DIG_MUST_CHECK enum dig_status dig_plan_check(const struct dig_plan   *plan,
-                                              const struct dig_scene  *scene,
-                                              const struct dig_engine *engine,
-                                              struct dig_error        *error);
+/// Refuses a point whose effect cannot be put into the scene at that magnitude, and one whose
+/// approach takes a trajectory of the plan out of the box or starts it in the ground.
+DIG_MUST_CHECK enum dig_status
+dig_plan_check(const struct dig_plan *plan, const struct dig_scene *scene, struct dig_error *error);
 
 #endif // DIG_TOOLS_DIGTABLE_PLAN_H

@@ -1,8 +1,9 @@
 #include "tools/digtable/progress.h"
 
+#include "offline_dem/sweep/sweep.h"
+
 #include <math.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
 struct dig_progress_line dig_progress_line(const bool quiet)
@@ -15,16 +16,9 @@ struct dig_progress_line dig_progress_line(const bool quiet)
                                        .printed_s = -1e9 };
 }
 
-double dig_progress_now_s(void)
-{
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 bool dig_progress_is_due(struct dig_progress_line *const line)
 {
-    const double at_s = dig_progress_now_s();
+    const double at_s = dig_sweep_now_s();
     if (at_s - line->printed_s < line->every_s) {
         return false;
     }

@@ -23,7 +23,4 @@ void        dig_progress_end(const struct dig_progress_line *line, bool last);
 /// "42 s", "1:02:03", or "?" when it is not finite. Returns text.
 const char *dig_progress_span(double seconds, size_t size, char text[]);
 
-/// Seconds on the monotonic clock.
-double dig_progress_now_s(void);
-
 #endif // DIG_TOOLS_DIGTABLE_PROGRESS_H

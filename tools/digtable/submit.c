@@ -226,7 +226,7 @@ int dig_cli_submit(const struct dig_arguments *const a)
         .packings   = a->packings,
         .tasks      = a->tasks,
     };
-    status = dig_plan_check(&plan, &scene, &engine, &error);
+    status = dig_plan_check(&plan, &scene, &error);
     if (status == DIG_OK) {
         status = submit(a, &wanted, &s, &error);
     }
