@@ -6,7 +6,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     BLOCKS  = DIG_COVARIANCE_BLOCKS,
@@ -17,10 +16,11 @@ _Static_assert(POINTS *BLOCKS == DIG_CURVE_POINTS, "blocks are equally long");
 
 // Digs of one gravel along one trajectory: mean, and squares about it (Welford 1962).
 struct gravel {
-    sqlite3_int64 ground, trajectory;
-    double        digs;
-    double        mean[NUMBERS];
-    double        squares[NUMBERS][NUMBERS];
+    struct dig_gravel gravel;
+    size_t            trajectory;
+    double            digs;
+    double            mean[NUMBERS];
+    double            squares[NUMBERS][NUMBERS];
 };
 
 static void take(struct gravel *const g, const double curve[DIG_CHANNELS][DIG_CURVE_POINTS])
@@ -75,71 +75,33 @@ static void close_gravel(const struct gravel *const g, struct dig_covariance cov
     }
 }
 
-// The row a statement stands on, mapped to progress.
-static enum dig_status read_run(sqlite3_stmt *const s, const char *const path,
-                                const struct dig_table_head *const head,
-                                double                  curve[DIG_CHANNELS][DIG_CURVE_POINTS],
+// Runs under way, gravel by gravel and of each trajectory by trajectory.
+struct pool {
+    const char                  *path;
+    const struct dig_table_head *head;
+    struct gravel                of;
+    struct dig_covariance       *covariance; // [trajectories]
+};
+
+static enum dig_status take_run(void *const context, const struct dig_run *const run,
                                 struct dig_error *const error)
 {
-    const sqlite3_int64  trajectory = sqlite3_column_int64(s, 1);
-    const sqlite3_int64  windows    = sqlite3_column_int64(s, 2);
-    const double         first_s    = sqlite3_column_double(s, 3);
-    const double         step_s     = sqlite3_column_double(s, 4);
-    const uint8_t *const bytes      = sqlite3_column_blob(s, 5);
-    if (trajectory < 0 || trajectory >= (sqlite3_int64)head->trajectories || windows < 2 ||
-        windows > DIG_WINDOWS_MAX || bytes == NULL ||
-        sqlite3_column_bytes(s, 5) != (int)windows * DIG_CHANNELS * 4 || !(step_s > 0.0) ||
-        !isfinite(step_s) || !isfinite(first_s)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: run: expected a trajectory of the table and %d float32 for each "
-                             "of its windows",
-                             path, DIG_CHANNELS);
+    struct pool *const                 p                                     = context;
+    const struct dig_table_head *const head                                  = p->head;
+    const struct dig_run_origin *const o                                     = &run->origin;
+    double                             curve[DIG_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
+    const enum dig_status              status =
+        dig_derive_run(&head->trajectory[o->trajectory], head->tooth_m, head->smooth_half_s,
+                       run->windows, run->first_s, run->step_s, run->value, curve);
+    if (status != DIG_OK) {
+        return dig_error_set(error, status, "%s: no memory", p->path);
     }
-    const size_t numbers = (size_t)windows * DIG_CHANNELS;
-    float *const value   = malloc(numbers * sizeof *value);
-    if (value == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+    if (!dig_gravel_is_same(&o->gravel, &p->of.gravel) || o->trajectory != p->of.trajectory) {
+        close_gravel(&p->of, p->covariance);
+        p->of = (struct gravel){ .gravel = o->gravel, .trajectory = o->trajectory };
     }
-    dig_floats_unpack(numbers, bytes, value);
-    enum dig_status status = DIG_EINVAL;
-    if (dig_channels_sound((size_t)windows, value)) {
-        status = dig_derive_run(&head->trajectory[trajectory], head->tooth_m, head->smooth_half_s,
-                                (size_t)windows, first_s, step_s, value, curve);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: no memory", path);
-        }
-    } else {
-        (void)dig_error_set(error, DIG_EINVAL,
-                            "%s: run.curve: a number that is not finite, expected finite ones",
-                            path);
-    }
-    free(value);
-    return status;
-}
-
-static enum dig_status pool(sqlite3_stmt *const s, const char *const path,
-                            const struct dig_table_head *const head,
-                            struct dig_covariance covariance[], struct dig_error *const error)
-{
-    struct gravel   g      = { .ground = -1 };
-    enum dig_status status = DIG_OK;
-    while (dig_sql_row(s, path, &status, error)) {
-        double              curve[DIG_CHANNELS][DIG_CURVE_POINTS] = { { 0.0 } };
-        const sqlite3_int64 ground                                = sqlite3_column_int64(s, 0);
-        const sqlite3_int64 trajectory                            = sqlite3_column_int64(s, 1);
-        status = read_run(s, path, head, curve, error);
-        if (status == DIG_OK && (ground != g.ground || trajectory != g.trajectory)) {
-            close_gravel(&g, covariance);
-            g = (struct gravel){ .ground = ground, .trajectory = trajectory };
-        }
-        if (status == DIG_OK) {
-            take(&g, (const double(*)[DIG_CURVE_POINTS])curve);
-        }
-    }
-    if (status == DIG_OK) {
-        close_gravel(&g, covariance);
-    }
-    return status;
+    take(&p->of, (const double(*)[DIG_CURVE_POINTS])curve);
+    return DIG_OK;
 }
 
 enum dig_status dig_sql_load_covariance(sqlite3 *const db, const char *const path,
@@ -152,22 +114,18 @@ enum dig_status dig_sql_load_covariance(sqlite3 *const db, const char *const pat
     if (made == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
     }
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        dig_sql_prepare(db, path,
-                        "SELECT ground, trajectory, windows, first_s, step_s, curve "
-                        "FROM run JOIN ground g ON g.id = run.ground "
-                        "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
-                        "ORDER BY ground, trajectory, packing",
-                        &s, error);
-    if (status == DIG_OK) {
-        status = pool(s, path, head, made, error);
-    }
-    (void)sqlite3_finalize(s);
+    struct pool                  pool    = { .path = path, .head = head, .covariance = made };
+    const struct dig_run_visitor visitor = { take_run, &pool };
+    const enum dig_status        status =
+        dig_sql_walk(db, path, head,
+                     "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
+                     "ORDER BY ground, trajectory, packing",
+                     &visitor, error);
     if (status != DIG_OK) {
         free(made);
         return status;
     }
+    close_gravel(&pool.of, made);
     for (size_t t = 0; t < head->trajectories; t++) {
         for (size_t i = 0; i < NUMBERS; i++) {
             for (size_t j = 0; j < NUMBERS; j++) {

@@ -84,9 +84,9 @@ static bool column_label(sqlite3_stmt *const s, const int column, const size_t s
     "wall_s, made_utc, windows, first_s, step_s, curve, effect, magnitude, depth, attack_rad"
 
 // The row a statement over RUN_COLUMNS stands on; *value is malloc'ed and is run->value.
-static enum dig_status read_run(const struct dig_store *const store, sqlite3_stmt *const s,
-                                struct dig_run *const run, float **const value,
-                                struct dig_error *const error)
+static enum dig_status read_run(const char *const path, const struct dig_table_head *const head,
+                                sqlite3_stmt *const s, struct dig_run *const run,
+                                float **const value, struct dig_error *const error)
 {
     struct dig_run_origin *const o = &run->origin;
     for (int a = 0; a < DIG_AXES; a++) {
@@ -114,49 +114,58 @@ static enum dig_status read_run(const struct dig_store *const store, sqlite3_stm
         return dig_error_set(error, DIG_EINVAL,
                              "%s: run: engine \"%s\", version \"%s\", made_utc \"%s\", "
                              "expected " DIG_LABEL_RULE,
-                             store->path, o->engine, o->version, o->made_utc);
+                             path, o->engine, o->version, o->made_utc);
     }
     const uint8_t *const bytes = sqlite3_column_blob(s, 14);
     const int            size  = sqlite3_column_bytes(s, 14);
-    if (packing < 0 || trajectory < 0 || trajectory >= (sqlite3_int64)store->head.trajectories ||
+    if (packing < 0 || trajectory < 0 || trajectory >= (sqlite3_int64)head->trajectories ||
         windows < 2 || windows > DIG_WINDOWS_MAX || size != (int)windows * DIG_CHANNELS * 4 ||
         !(run->step_s > 0.0) || !isfinite(run->step_s) || !isfinite(run->first_s)) {
         return dig_error_set(error, DIG_EINVAL,
-                             "%s: run.curve: %d bytes for %lld windows, expected %d each",
-                             store->path, size, (long long)windows, DIG_CHANNELS * 4);
+                             "%s: run.curve: %d bytes for %lld windows from %g s by %g s, expected "
+                             "%d each at finite times",
+                             path, size, (long long)windows, run->first_s, run->step_s,
+                             DIG_CHANNELS * 4);
     }
     run->windows      = (size_t)windows;
     float *const into = malloc(run->windows * DIG_CHANNELS * sizeof *into);
     if (into == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
     }
     dig_floats_unpack(run->windows * DIG_CHANNELS, bytes, into);
     if (!dig_channels_sound(run->windows, into)) {
         free(into);
         return dig_error_set(error, DIG_EINVAL,
                              "%s: run.curve: a number that is not finite, expected finite ones",
-                             store->path);
+                             path);
     }
     *value     = into;
     run->value = into;
     return DIG_OK;
 }
 
-// Visits the rows of a statement over RUN_COLUMNS.
-static enum dig_status walk(struct dig_store *const store, sqlite3_stmt *const s,
-                            const struct dig_run_visitor *const visitor,
-                            struct dig_error *const             error)
+enum dig_status dig_sql_walk(sqlite3 *const db, const char *const path,
+                             const struct dig_table_head *const head, const char *const which,
+                             const struct dig_run_visitor *const visitor,
+                             struct dig_error *const             error)
 {
-    enum dig_status status = DIG_OK;
-    while (dig_sql_row(s, store->path, &status, error)) {
+    char          sql[500];
+    sqlite3_stmt *s = NULL;
+    const int     length =
+        snprintf(sql, sizeof sql,
+                 "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground %s", which);
+    assert(length > 0 && (size_t)length < sizeof sql);
+    enum dig_status status = dig_sql_prepare(db, path, sql, &s, error);
+    while (dig_sql_row(s, path, &status, error)) {
         struct dig_run run   = { .windows = 0 };
         float         *value = NULL;
-        status               = read_run(store, s, &run, &value, error);
+        status               = read_run(path, head, s, &run, &value, error);
         if (status == DIG_OK) {
             status = visitor->visit(visitor->context, &run, error);
         }
         free(value);
     }
+    (void)sqlite3_finalize(s);
     return status;
 }
 
@@ -165,18 +174,10 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
                                struct dig_error *const             error)
 {
     assert(store != NULL && visitor != NULL);
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(
-        store->db, store->path,
-        "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground ORDER BY "
-        "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad, "
-        "trajectory, packing",
-        &s, error);
-    if (status == DIG_OK) {
-        status = walk(store, s, visitor, error);
-    }
-    (void)sqlite3_finalize(s);
-    return status;
+    return dig_sql_walk(store->db, store->path, &store->head,
+                        "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, "
+                        "attack_rad, trajectory, packing",
+                        visitor, error);
 }
 
 struct deriving {
@@ -211,20 +212,11 @@ enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_in
                                  const size_t trajectory, struct dig_ensemble *const ensemble,
                                  struct dig_error *const error)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(
-        store->db, store->path,
-        "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground WHERE ground = "
-        "?1 AND trajectory = ?2 ORDER BY packing",
-        &s, error);
-    if (status == DIG_OK) {
-        (void)sqlite3_bind_int64(s, 1, ground);
-        (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)trajectory);
-        struct deriving              deriving = { store, ensemble };
-        const struct dig_run_visitor visitor  = { derive_one, &deriving };
-        *ensemble                             = (struct dig_ensemble){ 0 };
-        status                                = walk(store, s, &visitor, error);
-    }
-    (void)sqlite3_finalize(s);
-    return status;
+    char                         which[120];
+    struct deriving              deriving = { store, ensemble };
+    const struct dig_run_visitor visitor  = { derive_one, &deriving };
+    *ensemble                             = (struct dig_ensemble){ 0 };
+    (void)snprintf(which, sizeof which, "WHERE ground = %lld AND trajectory = %zu ORDER BY packing",
+                   (long long)ground, trajectory);
+    return dig_sql_walk(store->db, store->path, &store->head, which, &visitor, error);
 }

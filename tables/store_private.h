@@ -41,6 +41,12 @@ DIG_MUST_CHECK enum dig_status dig_ground_find(const struct dig_store      *stor
                                                const struct dig_run_origin *origin,
                                                sqlite3_int64 *id, struct dig_error *error);
 
+/// Visits the runs that `which`, the end of a statement over `run` and `ground`, says.
+DIG_MUST_CHECK enum dig_status dig_sql_walk(sqlite3 *db, const char *path,
+                                            const struct dig_table_head *head, const char *which,
+                                            const struct dig_run_visitor *visitor,
+                                            struct dig_error             *error);
+
 /// The mean and spread of all runs of one ground and trajectory, added up by packing.
 DIG_MUST_CHECK enum dig_status dig_entry_derive(struct dig_store *store, sqlite3_int64 ground,
                                                 size_t trajectory, struct dig_ensemble *ensemble,

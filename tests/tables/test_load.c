@@ -78,13 +78,14 @@ TEST(the_covariance_is_that_of_the_packings_of_all_gravels)
     fixture_put(store, .3, .6, 0, 0, 10.0);
     fixture_put(store, .3, .6, 1, 0, 12.0);
     fixture_put(store, .6, .6, 0, 0, 5.0);
+    fixture_put(store, .6, .6, 1, 0, 5.0);
     fixture_put(store, .3, .3, 0, 1, 1.0);
     dig_store_close(store);
     struct dig_curve_set *const        set = fixture_load("covariance.sqlite");
     const struct dig_covariance *const c   = set->covariance;
-    const double                       one = ((4.0 + 1.0 + 9.0) / 9.0 + 2.0 / 121.0) / 3.0;
+    const double                       one = ((4.0 + 1.0 + 9.0) / 9.0 + 2.0 / 121.0) / 4.0;
     assert_non_null(c);
-    assert_close(c[0].freedom, 3.0, 0.0);
+    assert_close(c[0].freedom, 4.0, 0.0);
     assert_close(c[1].freedom, 0.0, 0.0);
     for (size_t i = 0; i < DIG_COVARIANCE_NUMBERS; i++) {
         for (size_t j = 0; j < DIG_COVARIANCE_NUMBERS; j++) {
@@ -182,8 +183,8 @@ TEST(damage_is_refused_and_named)
           DIG_EINVAL, "finite" },
         { "UPDATE entry SET trajectory = 1; UPDATE entry SET trajectory = 9", DIG_EINVAL,
           "refers to nothing" },
-        { "UPDATE run SET curve = x'00'", DIG_EINVAL, "run: expected a trajectory" },
-        { "UPDATE run SET windows = windows + 1", DIG_EINVAL, "run: expected a trajectory" },
+        { "UPDATE run SET curve = x'00'", DIG_EINVAL, "run.curve: 1 bytes for" },
+        { "UPDATE run SET windows = windows + 1", DIG_EINVAL, "s, expected 16 each" },
         { "UPDATE run SET curve = CAST(substr(curve, 1, 400) || x'0000c07f' || "
           "substr(curve, 405) AS BLOB)",
           DIG_EINVAL, "run.curve: a number that is not finite" },
