@@ -15,14 +15,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct dig_device;
 struct dig_world;
 
 /// Who steps the grains; NULL: the kernel, in double precision.
 struct dig_stepper {
-    struct dig_device *device; // NULL: the kernel
-    // Sets the world's stand_in (offline_dem/world/world.h), DIG_ENOMEM; NULL: as above.
-    enum dig_status (*take_over)(struct dig_world *world);
+    // Makes something else step a world: sets its stand_in (offline_dem/world/world.h). DIG_ENOMEM,
+    // or another status and *error. NULL: the kernel steps.
+    enum dig_status (*take_over)(struct dig_world *world, struct dig_error *error);
     bool single_precision; // of the kernel, where it can (kernel.h)
     size_t
         threads; // in a large bed; 0, 1: none beside the caller. With a device they make its lists

@@ -3,7 +3,6 @@
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/world/bodies.h"
 #include "offline_dem/world/ode_scene.h"
-#include "offline_dem/world/offloaded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -138,15 +137,13 @@ enum dig_status dig_setup_stepper(const struct dig_stepper *const stepper,
 {
     world->single          = stepper->single_precision;
     enum dig_status status = DIG_OK;
-    if (stepper->device != NULL) {
-        status = dig_offload(world, stepper->device);
-    } else if (stepper->take_over != NULL) {
-        status = stepper->take_over(world);
+    if (stepper->take_over != NULL) {
+        status = stepper->take_over(world, error);
     }
     if (status == DIG_OK && stepper->threads > 1 && world->grains.n >= least_to_share) {
         status = dig_crew_create(stepper->threads, &world->crew);
     }
-    return status == DIG_OK ? status : dig_setup_explain(status, error);
+    return status == DIG_ENOMEM ? dig_setup_explain(status, error) : status;
 }
 
 void dig_setup_finish(struct dig_world *const world)

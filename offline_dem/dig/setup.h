@@ -24,7 +24,7 @@ DIG_MUST_CHECK enum dig_status dig_setup_world(const struct dig_scene  *scene,
                                                struct dig_grain_types *types,
                                                struct dig_world *world, struct dig_error *error);
 
-/// Who steps a world that has not made a step. DIG_ENOMEM leaves it with the kernel.
+/// Who steps a world that has not made a step. On failure the kernel does.
 DIG_MUST_CHECK enum dig_status dig_setup_stepper(const struct dig_stepper *stepper,
                                                  struct dig_world *world, struct dig_error *error);
 

@@ -49,8 +49,9 @@ static void destroy(struct dig_world *const w)
     dig_ode_bed_destroy(w->stand_in_own);
 }
 
-static enum dig_status take_over(struct dig_world *const w)
+static enum dig_status take_over(struct dig_world *const w, struct dig_error *const error)
 {
+    (void)error;
     static const struct dig_stand_in stand_in = { step, sync, destroy };
     w->stand_in_own                           = dig_ode_bed_create(w);
     w->stand_in                               = w->stand_in_own != NULL ? &stand_in : NULL;

@@ -29,11 +29,12 @@ static struct dig_offloaded *own_of(const struct dig_world *const w)
     return w->stand_in_own;
 }
 
-// The device stays its owner's.
 static void destroy(struct dig_world *const w)
 {
-    dig_device_arrays_finish(&own_of(w)->arrays);
-    free(own_of(w));
+    struct dig_offloaded *const o = own_of(w);
+    o->device->destroy(o->device);
+    dig_device_arrays_finish(&o->arrays);
+    free(o);
 }
 
 // Adds the grains' wrenches to the world's and clears them.
@@ -155,6 +156,7 @@ enum dig_status dig_offload(struct dig_world *const w, struct dig_device *const 
     struct dig_offloaded *const o = calloc(1, sizeof *o);
     if (o == NULL || dig_device_arrays_init(&o->arrays) != DIG_OK) {
         free(o);
+        device->destroy(device);
         return DIG_ENOMEM;
     }
     o->device           = device;

@@ -8,8 +8,8 @@
 #include "offline_dem/world/device.h"
 #include "offline_dem/world/world.h"
 
-/// Hands the world's steps to the device, which the world does not own and which serves no other
-/// world meanwhile. No rock of the world is movable. DIG_ENOMEM leaves the world with the kernel.
+/// Hands the world's steps to the device, which from then on is the world's and ends with it. No
+/// rock of the world is movable. DIG_ENOMEM ends the device and leaves the world with the kernel.
 /// From then on dig_world_step() gives DIG_EINVAL for a grain that leaves its margin between two
 /// polls, as for one that moves its radius in a step.
 DIG_MUST_CHECK enum dig_status dig_offload(struct dig_world *world, struct dig_device *device);

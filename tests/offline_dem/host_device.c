@@ -2,6 +2,7 @@
 
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
+#include "offline_dem/world/offloaded.h"
 
 #include <stdlib.h>
 
@@ -79,4 +80,11 @@ struct dig_device *dem_host_device_create(void)
         .destroy      = destroy,
     };
     return &host->device;
+}
+
+enum dig_status dem_host_take_over(struct dig_world *const world, struct dig_error *const error)
+{
+    struct dig_device *const host = dem_host_device_create();
+    (void)error;
+    return host != NULL ? dig_offload(world, host) : DIG_ENOMEM;
 }

@@ -94,18 +94,15 @@ TEST(a_bed_on_a_device_moves_alike_on_any_number_of_threads)
 {
     struct dig_world world[2] = { make_bar(), make_bar() };
     for (size_t k = 0; k < 2; k++) {
-        struct dig_device *const device = dem_host_device_create();
-        assert_non_null(device);
         world[k].wall[0].offset_m = -0.99 * GRAIN_m; // where it throws no grain out of its margin
         if (k > 0) {
             assert_int_equal(dig_crew_create(3, &world[k].crew), DIG_OK);
         }
-        assert_int_equal(dig_offload(&world[k], device), DIG_OK);
+        assert_int_equal(dem_host_take_over(&world[k], NULL), DIG_OK);
         dem_run(&world[k], 10);
         dig_world_mark_stale(&world[k]);
         dem_run(&world[k], 10);
         assert_int_equal(dig_world_sync(&world[k]), DIG_OK);
-        device->destroy(device);
     }
     assert_true(world[0].pair[0].n > MANY / 2 && world[0].surface[0].n > ACROSS);
     assert_int_equal(world[0].pair[0].n, world[1].pair[0].n);

@@ -10,13 +10,12 @@ static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 static struct dig_recording dig_with(const bool ode, const struct dig_scene *const scene,
                                      const struct dig_bed *const bed)
 {
-    const struct dig_stepper           kernel = { .device = NULL };
     const struct dig_engine            engine = dig_engine_ode();
     const struct dig_trajectory *const t      = &scene->trajectory[0];
     struct dig_recording               r      = { 0 };
     struct dig_error                   error  = { "" };
     assert_ok((ode ? engine.dig(&engine.stepper, scene, &gravel, bed, t, NULL, NULL, &r, &error)
-                   : dig_dig_run(&kernel, scene, &gravel, bed, t, NULL, NULL, &r, &error)),
+                   : dig_dig_run(NULL, scene, &gravel, bed, t, NULL, NULL, &r, &error)),
               error);
     return r;
 }

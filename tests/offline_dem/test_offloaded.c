@@ -11,15 +11,16 @@
 
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
-static struct dig_recording dig_on(struct dig_device *const      device,
-                                   const struct dig_scene *const scene,
-                                   const struct dig_bed *const   bed)
+static const struct dig_stepper on_host = { .take_over = dem_host_take_over };
+
+static struct dig_recording dig_on(const struct dig_stepper *const stepper,
+                                   const struct dig_scene *const   scene,
+                                   const struct dig_bed *const     bed)
 {
-    struct dig_recording     r       = { 0 };
-    struct dig_error         error   = { "" };
-    const struct dig_stepper stepper = { .device = device };
+    struct dig_recording r     = { 0 };
+    struct dig_error     error = { "" };
     assert_ok(
-        dig_dig_run(&stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
+        dig_dig_run(stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
         error);
     return r;
 }
@@ -48,18 +49,15 @@ static void rows_agree(const struct dig_recording *const a, const struct dig_rec
 // Some thousand steps, with lists made anew: every window of the dig, before chaos parts them.
 static void digs_agree(const struct dig_scene *const scene)
 {
-    struct dig_device *const host = dem_host_device_create();
-    struct dig_bed           bed;
-    struct dig_error         error = { "" };
-    assert_non_null(host);
+    struct dig_bed   bed;
+    struct dig_error error = { "" };
     assert_ok(dig_bed_pour(NULL, scene, &gravel, 1, NULL, &bed, &error), error);
     struct dig_recording kernel = dig_on(NULL, scene, &bed);
-    struct dig_recording device = dig_on(host, scene, &bed);
+    struct dig_recording device = dig_on(&on_host, scene, &bed);
     rows_agree(&kernel, &device);
     dig_recording_finish(&kernel);
     dig_recording_finish(&device);
     dig_bed_finish(&bed);
-    host->destroy(host);
 }
 
 TEST(a_short_dig_gives_the_kernels_curve)
@@ -160,11 +158,9 @@ TEST(a_contact_goes_on_across_an_edge)
     struct dig_world               kernel  = dem_world(1, x, dem_material(0.5, 0.0));
     struct dig_world               device  = dem_world(1, x, dem_material(0.5, 0.0));
     struct dig_tool                tool    = dig_tool_make(&bucket);
-    struct dig_device *const       host    = dem_host_device_create();
-    assert_non_null(host);
-    kernel.tool = &tool;
-    device.tool = &tool;
-    assert_int_equal(dig_offload(&device, host), DIG_OK);
+    kernel.tool                            = &tool;
+    device.tool                            = &tool;
+    assert_int_equal(dem_host_take_over(&device, NULL), DIG_OK);
     for (double angle = 3.75; angle > 2.5; angle -= 1e-3) {
         struct dig_wrench ours, theirs;
         lead_round(angle, -1e-3 / STEP_s, &kernel);
@@ -179,7 +175,6 @@ TEST(a_contact_goes_on_across_an_edge)
     }
     dig_world_finish(&kernel);
     dig_world_finish(&device);
-    host->destroy(host);
 }
 
 // A device whose grains never ask for new lists: steps on, and then says that one got away.
@@ -212,11 +207,9 @@ TEST(a_grain_that_got_away_is_refused)
     assert_int_equal(status, DIG_EINVAL);
     assert_true(steps > 100);
     dig_world_finish(&world);
-    host->destroy(host);
 }
 
-// Its sines are its own, so clumps part from the processor's by rounding: slowly, in a short dig.
-TEST(a_card_digs_clumps_between_rocks)
+static void skip_without_card(void)
 {
     struct dig_error         error = { "" };
     struct dig_device *const card  = dig_device_cuda_create(&error);
@@ -224,16 +217,23 @@ TEST(a_card_digs_clumps_between_rocks)
         print_message("SKIP: %s\n", error.text);
         skip();
     }
-    const struct dig_scene scene = clumps_and_rocks();
-    struct dig_bed         bed;
-    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, NULL, &bed, &error), DIG_OK);
+    card->destroy(card);
+}
+
+// Its sines are its own, so clumps part from the processor's by rounding: slowly, in a short dig.
+TEST(a_card_digs_clumps_between_rocks)
+{
+    skip_without_card();
+    const struct dig_engine cuda  = dig_engine_cuda();
+    const struct dig_scene  scene = clumps_and_rocks();
+    struct dig_bed          bed;
+    assert_int_equal(dig_bed_pour(NULL, &scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
     struct dig_recording ours   = dig_on(NULL, &scene, &bed);
-    struct dig_recording theirs = dig_on(card, &scene, &bed);
+    struct dig_recording theirs = dig_on(&cuda.stepper, &scene, &bed);
     rows_agree(&ours, &theirs);
     dig_recording_finish(&ours);
     dig_recording_finish(&theirs);
     dig_bed_finish(&bed);
-    card->destroy(card);
 }
 
 // Without a card, and where scenes hold what a card does not know.
@@ -259,37 +259,25 @@ TEST(the_engine_says_what_is_missing)
 // The card rounds as the processor does and adds in the same order: not a bit may differ.
 TEST(a_card_gives_the_bits_of_the_processor)
 {
-    struct dig_error         error = { "" };
-    struct dig_device *const card  = dig_device_cuda_create(&error);
-    if (card == NULL) {
-        print_message("SKIP: %s\n", error.text);
-        skip();
-    }
-    struct dig_device *const host = dem_host_device_create();
-    assert_non_null(host);
-    struct dig_scene scene = dem_short_dig_scene(0.03);
-    scene.bed.sizes        = 2;
-    scene.bed.size[0]      = (struct dig_size){ 0.006, 0.5 };
-    scene.bed.size[1]      = (struct dig_size){ 0.0085, 0.5 };
-    struct dig_bed on_host;
-    struct dig_bed on_card;
-    assert_int_equal(dig_bed_pour(&(struct dig_stepper){ .device = host }, &scene, &gravel, 1, NULL,
-                                  &on_host, NULL),
-                     DIG_OK);
-    assert_int_equal(dig_bed_pour(&(struct dig_stepper){ .device = card }, &scene, &gravel, 1, NULL,
-                                  &on_card, NULL),
-                     DIG_OK);
-    assert_int_equal(on_card.grains, on_host.grains);
-    assert_memory_equal(on_card.x_m, on_host.x_m, on_host.grains * sizeof *on_host.x_m);
-    assert_memory_equal(on_card.z_m, on_host.z_m, on_host.grains * sizeof *on_host.z_m);
-    struct dig_recording ours   = dig_on(host, &scene, &on_host);
-    struct dig_recording theirs = dig_on(card, &scene, &on_card);
+    skip_without_card();
+    const struct dig_engine cuda  = dig_engine_cuda();
+    struct dig_scene        scene = dem_short_dig_scene(0.03);
+    scene.bed.sizes               = 2;
+    scene.bed.size[0]             = (struct dig_size){ 0.006, 0.5 };
+    scene.bed.size[1]             = (struct dig_size){ 0.0085, 0.5 };
+    struct dig_bed a;
+    struct dig_bed b;
+    assert_int_equal(dig_bed_pour(&on_host, &scene, &gravel, 1, NULL, &a, NULL), DIG_OK);
+    assert_int_equal(dig_bed_pour(&cuda.stepper, &scene, &gravel, 1, NULL, &b, NULL), DIG_OK);
+    assert_int_equal(b.grains, a.grains);
+    assert_memory_equal(b.x_m, a.x_m, a.grains * sizeof *a.x_m);
+    assert_memory_equal(b.z_m, a.z_m, a.grains * sizeof *a.z_m);
+    struct dig_recording ours   = dig_on(&on_host, &scene, &a);
+    struct dig_recording theirs = dig_on(&cuda.stepper, &scene, &b);
     assert_int_equal(theirs.rows, ours.rows);
     assert_memory_equal(theirs.row, ours.row, ours.rows * sizeof *ours.row);
     dig_recording_finish(&ours);
     dig_recording_finish(&theirs);
-    dig_bed_finish(&on_host);
-    dig_bed_finish(&on_card);
-    host->destroy(host);
-    card->destroy(card);
+    dig_bed_finish(&a);
+    dig_bed_finish(&b);
 }

@@ -43,17 +43,14 @@ static struct dig_recording pull(const enum engine engine, const struct dig_scen
     };
     const struct dig_trajectory *const t       = &scene->trajectory[0];
     const struct dig_engine            ode     = dig_engine_ode();
-    struct dig_device *const           host    = engine == DEVICE ? dem_host_device_create() : NULL;
-    const struct dig_stepper           stepper = { .device = host };
+    const struct dig_stepper           stepper = { .take_over =
+                                             engine == DEVICE ? dem_host_take_over : NULL };
     struct dig_recording               r       = { 0 };
     struct dig_error                   error   = { "" };
     assert_ok((engine == ODE
                    ? ode.dig(&ode.stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)
                    : dig_dig_run(&stepper, scene, &gravel, &bed, t, NULL, NULL, &r, &error)),
               error);
-    if (host != NULL) {
-        host->destroy(host);
-    }
     return r;
 }
 
