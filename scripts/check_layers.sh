@@ -45,7 +45,7 @@ offline_dem/law        | both law law_general period random rigid wall
 offline_dem/shapes     | bucket_surface clump rock_surface tool
 offline_dem/kernel     | clump_body contacts crew grains kernel neighbour
 offline_dem/world      | bodies device grain_types obstacles ode_rocks ode_scene offloaded world
-offline_dem/dig        checked_pour dig input_checks variant | setup
+offline_dem/dig        checked_pour dig input_checks variant
 offline_dem/sweep      sweep
 offline_dem/device     engine_cuda | device_grain device_surfaces
 offline_dem/reference  engine_ode
