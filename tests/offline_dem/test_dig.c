@@ -68,23 +68,6 @@ TEST(a_dig_is_recorded_from_air_to_its_end)
     dig_bed_finish(&bed);
 }
 
-TEST(the_same_dig_twice_gives_the_same_bits)
-{
-    const struct dig_scene scene = small_scene();
-    struct dig_bed         bed   = pour(&scene);
-    struct dig_recording   r[2]  = { { 0 }, { 0 } };
-    for (int k = 0; k < 2; k++) {
-        assert_int_equal(
-            dig_dig_run(NULL, &scene, &gravel, &bed, &scene.trajectory[0], NULL, NULL, &r[k], NULL),
-            DIG_OK);
-    }
-    assert_int_equal(r[0].rows, r[1].rows);
-    assert_memory_equal(r[0].row, r[1].row, r[0].rows * sizeof *r[0].row);
-    dig_recording_finish(&r[0]);
-    dig_recording_finish(&r[1]);
-    dig_bed_finish(&bed);
-}
-
 static void expect_refusal(const struct dig_scene *const scene, const struct dig_gravel *const g,
                            const struct dig_bed *const bed, const char *const word)
 {

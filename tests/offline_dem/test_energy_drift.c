@@ -141,6 +141,7 @@ TEST(what_is_watched_is_poured_as_ever)
     assert_int_equal(dig_bed_pour_checked(NULL, &scene, &gravel, 3, NULL, &bed, NULL), DIG_OK);
     assert_int_equal(bed.grains, poured.grains);
     assert_memory_equal(bed.x_m, poured.x_m, bed.grains * sizeof *bed.x_m);
+    assert_memory_equal(bed.z_m, poured.z_m, bed.grains * sizeof *bed.z_m);
     dig_bed_finish(&bed);
 }
 

@@ -2,8 +2,7 @@
 
 #include "offline_dem/reference/engine_ode.h"
 #include "tests/dem_fixture.h"
-
-#include <math.h>
+#include "tests/offline_dem/rows_agree.h"
 
 static const struct dig_gravel gravel = { { 0.5, 0.5, DENSITY } };
 
@@ -28,23 +27,7 @@ static void digs_agree(const struct dig_scene *const scene)
     assert_int_equal(ode.pour(&ode.stepper, scene, &gravel, 1, NULL, &bed, NULL), DIG_OK);
     struct dig_recording ours   = dig_with(false, scene, &bed);
     struct dig_recording theirs = dig_with(true, scene, &bed);
-    assert_int_equal(ours.rows, theirs.rows);
-    double most_N = 0.0;
-    for (size_t k = 0; k < ours.rows; k++) {
-        most_N = fmax(most_N, hypot(ours.row[k].Fx_N, ours.row[k].Fz_N));
-    }
-    assert_true(most_N > 20.0 * GRAIN_kg * GRAVITY);
-    for (size_t k = 0; k < ours.rows; k++) {
-        const struct dig_force_row *const a = &ours.row[k];
-        const struct dig_force_row *const b = &theirs.row[k];
-        assert_close(b->t_s, a->t_s, 0.0);
-        assert_close(b->Fx_N, a->Fx_N, 1e-9 * most_N);
-        assert_close(b->Fy_N, a->Fy_N, 1e-9 * most_N);
-        assert_close(b->Fz_N, a->Fz_N, 1e-9 * most_N);
-        assert_close(b->My_Nm, a->My_Nm, 1e-9 * most_N * 0.04);
-        assert_close(b->theta_deg, a->theta_deg, 0.0);
-        assert_close(b->carried_kg, a->carried_kg, 1e-12);
-    }
+    rows_agree(&ours, &theirs);
     dig_recording_finish(&ours);
     dig_recording_finish(&theirs);
     dig_bed_finish(&bed);

@@ -161,53 +161,6 @@ TEST(momentum_and_angular_momentum_are_kept)
     dig_world_finish(&world);
 }
 
-// Lists of unlike kinds are kept apart and in one order: nothing is lost between them.
-TEST(grains_of_two_sizes_keep_momentum_too)
-{
-    struct dig_random random = { .state = 9 };
-    double            x[4][64];
-    for (size_t i = 0; i < 64; i++) {
-        const size_t at[3] = { i % 4, i / 4 % 4, i / 16 };
-        for (size_t k = 0; k < 3; k++) {
-            x[k][i] = 2.1 * GRAIN_m * (double)at[k];
-        }
-        x[3][i] = dig_random_next(&random) % 2 == 0 ? GRAIN_m : 0.7 * GRAIN_m;
-    }
-    struct dig_grains grains;
-    assert_int_equal(dem_create_grains(64, x[0], x[1], x[2], x[3], DENSITY, &grains), DIG_OK);
-    const struct dig_law_material material = dem_material(0.5, 0.3);
-    struct dig_world              world    = { .dt_s = STEP_s };
-    dig_world_init(&world, &grains);
-    dem_set_material(&world, &material);
-    assert_int_equal(world.grains.types, 2);
-    for (size_t i = 0; i < 64; i++) {
-        for (size_t k = 0; k < 3; k++) {
-            world.grains.motion[i].v_mps[k] =
-                -20.0 * (world.grains.motion[i].x_m[k] - 3.15 * GRAIN_m) +
-                dig_random_between(&random, -0.2, 0.2);
-        }
-    }
-    double p[2][3] = { { 0.0 } };
-    size_t mixed   = 0;
-    for (int when = 0; when < 2; when++) {
-        for (size_t i = 0; i < 64; i++) {
-            const double m_kg = world.grains.type[world.grains.type_of[i]].mass_kg;
-            for (size_t k = 0; k < 3; k++) {
-                p[when][k] += m_kg * world.grains.motion[i].v_mps[k];
-            }
-        }
-        for (int k = 0; when == 0 && k < 20; k++) {
-            dem_run(&world, 30);
-            mixed += world.pair[1].n;
-        }
-    }
-    assert_true(mixed > 20);
-    for (size_t k = 0; k < 3; k++) {
-        assert_close(p[1][k], p[0][k], 1e-14);
-    }
-    dig_world_finish(&world);
-}
-
 TEST(collisions_take_energy_away)
 {
     struct dig_world world   = make_cloud(3, 0.5);

@@ -5,6 +5,7 @@
 #include "offline_dem/world/offloaded.h"
 #include "tests/dem_fixture.h"
 #include "tests/offline_dem/host_device.h"
+#include "tests/offline_dem/rows_agree.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,27 +24,6 @@ static struct dig_recording dig_on(const struct dig_stepper *const stepper,
         dig_dig_run(stepper, scene, &gravel, bed, &scene->trajectory[0], NULL, NULL, &r, &error),
         error);
     return r;
-}
-
-static void rows_agree(const struct dig_recording *const a, const struct dig_recording *const b)
-{
-    assert_int_equal(a->rows, b->rows);
-    double most_N = 0.0;
-    for (size_t k = 0; k < a->rows; k++) {
-        most_N = fmax(most_N, hypot(a->row[k].Fx_N, a->row[k].Fz_N));
-    }
-    assert_true(most_N > 20.0 * GRAIN_kg * GRAVITY);
-    for (size_t k = 0; k < a->rows; k++) {
-        const struct dig_force_row *const x = &a->row[k];
-        const struct dig_force_row *const y = &b->row[k];
-        assert_close(y->t_s, x->t_s, 0.0);
-        assert_close(y->Fx_N, x->Fx_N, 1e-9 * most_N);
-        assert_close(y->Fy_N, x->Fy_N, 1e-9 * most_N);
-        assert_close(y->Fz_N, x->Fz_N, 1e-9 * most_N);
-        assert_close(y->Mx_Nm, x->Mx_Nm, 1e-9 * most_N * 0.04);
-        assert_close(y->My_Nm, x->My_Nm, 1e-9 * most_N * 0.04);
-        assert_close(y->carried_kg, x->carried_kg, 1e-12);
-    }
 }
 
 // Some thousand steps, with lists made anew: every window of the dig, before chaos parts them.

@@ -250,22 +250,6 @@ TEST(a_bed_that_was_dug_before_digs_differently_and_repeats)
     dig_bed_finish(&bed);
 }
 
-TEST(what_cannot_fit_is_refused_and_nothing_written)
-{
-    struct dig_scene scene       = small_scene();
-    struct dig_bed   bed         = { .grains = 77 };
-    scene.bed.sizes              = 1;
-    scene.bed.size[0]            = (struct dig_size){ 0.02, 1.0 };
-    scene.packing.solid_fraction = 0.4;
-    scene.packing.fill_factor    = 1.9;
-    scene.bed.obstacles          = 1;
-    scene.bed.obstacle[0]        = (struct dig_obstacle){ .shape    = DIG_OBSTACLE_BOX,
-                                                          .centre_m = { 0.03, 0.0, 0.1 },
-                                                          .size_m   = { 0.05, 0.04, 0.4 } };
-    assert_int_equal(dig_packing_insert(&scene, 1, &bed, NULL), DIG_EUNREACHABLE);
-    assert_int_equal(bed.grains, 77);
-}
-
 TEST(the_ground_may_differ_across_the_bed)
 {
     struct dig_scene scene = small_scene();

@@ -28,7 +28,6 @@ static enum dig_status pass_over(void *const context, const struct dig_run *cons
 // By the reader of curves, the reader of runs, the merger and the writer.
 static void assert_table_refused(const char *const path, const char *const says)
 {
-    const struct dig_scene       scene   = fixture_scene();
     const struct dig_run_visitor visitor = { pass_over, NULL };
     struct dig_curve_set        *set     = NULL;
     struct dig_entry_set        *effects = NULL;
@@ -55,7 +54,6 @@ static void assert_table_refused(const char *const path, const char *const says)
         (void)unlink(out); // what a merge makes of its runs is sound
     }
     assert_false(scratch_exists("out.sqlite.part"));
-    (void)scene;
 }
 
 TEST_WITH(a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs, scratch_setup,
