@@ -92,14 +92,17 @@ static enum dig_status make_ground(struct dig_store *const            store,
     enum dig_status status = dig_sql_prepare(
         store->db, store->path,
         "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
-        "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO NOTHING",
+        "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) "
+        "ON CONFLICT DO UPDATE SET friction = friction RETURNING id",
         &s, error);
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        dig_ground_bind(s, origin);
     }
-    dig_ground_bind(s, origin);
-    status = dig_sql_done(s, store->path, error);
-    return status == DIG_OK ? dig_ground_find(store, origin, id, error) : status;
+    if (dig_sql_row(s, store->path, &status, error)) {
+        *id = sqlite3_column_int64(s, 0);
+    }
+    (void)sqlite3_finalize(s);
+    return status;
 }
 
 static enum dig_status insert_run(struct dig_store *const store, const sqlite3_int64 ground,

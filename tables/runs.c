@@ -21,40 +21,18 @@ void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const o
     (void)sqlite3_bind_double(s, DIG_AXES + 4, normalized.attack_rad);
 }
 
-#define SAME_GROUND                                                                                \
-    "friction = ?1 AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "    \
-    "AND depth = ?6 AND attack_rad = ?7"
-
-enum dig_status dig_ground_find(const struct dig_store *const      store,
-                                const struct dig_run_origin *const origin, sqlite3_int64 *const id,
-                                struct dig_error *const error)
-{
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(store->db, store->path,
-                                             "SELECT id FROM ground WHERE " SAME_GROUND, &s, error);
-    if (status == DIG_OK) {
-        dig_ground_bind(s, origin);
-        status =
-            sqlite3_step(s) == SQLITE_ROW ? DIG_OK : dig_sql_refuse(store->db, store->path, error);
-    }
-    if (status == DIG_OK) {
-        *id = sqlite3_column_int64(s, 0);
-    }
-    (void)sqlite3_finalize(s);
-    return status;
-}
-
 enum dig_status dig_store_has(struct dig_store *const            store,
                               const struct dig_run_origin *const origin, bool *const there,
                               struct dig_error *const error)
 {
     assert(store != NULL && origin != NULL && there != NULL);
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        dig_sql_prepare(store->db, store->path,
-                        "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE " SAME_GROUND
-                        " AND packing = ?8 AND trajectory = ?9",
-                        &s, error);
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(
+        store->db, store->path,
+        "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE friction = ?1 "
+        "AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "
+        "AND depth = ?6 AND attack_rad = ?7 AND packing = ?8 AND trajectory = ?9",
+        &s, error);
     if (status != DIG_OK) {
         return status;
     }

@@ -36,11 +36,6 @@ DIG_MUST_CHECK enum dig_status dig_sql_load(sqlite3 *db, const char *path,
 /// depth and attack.
 void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);
 
-/// The key of the ground's row that *origin was dug in; DIG_EIO when there is none.
-DIG_MUST_CHECK enum dig_status dig_ground_find(const struct dig_store      *store,
-                                               const struct dig_run_origin *origin,
-                                               sqlite3_int64 *id, struct dig_error *error);
-
 /// Visits the runs that `which`, the end of a statement over `run` and `ground`, says.
 DIG_MUST_CHECK enum dig_status dig_sql_walk(sqlite3 *db, const char *path,
                                             const struct dig_table_head *head, const char *which,
