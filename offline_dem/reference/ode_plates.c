@@ -77,8 +77,8 @@ size_t dig_ode_plates_find(const struct dig_tool *const tool, const double body_
                            const struct dig_ode_history *const map,
                            struct dig_ode_plate_contact        contact[DIG_PLATES_MAX])
 {
-    const double            same_m = 1e-6 * radius_m;
-    struct candidate        found[DIG_PLATES_MAX + 1];
+    const double            same_m                    = 1e-6 * radius_m;
+    struct candidate        found[DIG_PLATES_MAX + 1] = { { { 0.0 }, 0.0, 0 } };
     const struct candidate *closer[DIG_PLATES_MAX];
     const size_t            count    = find_candidates(tool, body_m, radius_m, found);
     size_t                  contacts = 0;

@@ -96,11 +96,10 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
-    const uint32_t          i = list->i[first + c];
-    const struct dig_motion m = dig_grains_motion(&w->grains, i);
-    struct near_plates      near;
-    near.count = 0;
-    double body_m[3];
+    const uint32_t          i    = list->i[first + c];
+    const struct dig_motion m    = dig_grains_motion(&w->grains, i);
+    struct near_plates      near = { .count = 0 };
+    double                  body_m[3];
     dig_tool_to_body(w->tool, m.x_m, body_m);
     size_t used   = 0;
     size_t in_use = 0;
