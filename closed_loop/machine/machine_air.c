@@ -1,5 +1,6 @@
 #include "closed_loop/machine/machine_air.h"
 
+#include "closed_loop/machine/machine_stand.h"
 #include "core/linkage.h"
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/dynamics.h"
@@ -207,6 +208,7 @@ static void add_segment(struct dig_air *const air, const struct dig_machine_dig 
         add_rows(air, begin + p, POINTS_IN_BLOCK, segment, scatter_N, fmax(rate_Hz * step_s, 1e-3));
     }
     air->segment[segment].rows = air->rows - air->segment[segment].first_row;
+    dig_stand_widen(air, &air->segment[segment], dig);
 }
 
 enum dig_status dig_air_make(const struct dig_machine *const machine, const size_t digs,

@@ -107,19 +107,32 @@ static enum dig_status record(const struct dig_machine *const machine,
     return DIG_OK;
 }
 
+// The motion's readings are not rounded: what rounding they would have is noise.
+static struct dig_machine unrounded(const struct dig_machine *const machine)
+{
+    struct dig_machine even = *machine;
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        even.cylinder[j].pressure_sigma_Pa =
+            dig_reading_sigma(machine->pressure_step_Pa, machine->cylinder[j].pressure_sigma_Pa);
+    }
+    even.pressure_step_Pa = 0.0;
+    return even;
+}
+
 enum dig_status dig_motion_sigmas(const struct dig_machine *const    machine,
                                   const struct dig_motion *const     motion,
                                   const struct dig_correction *const a,
                                   const struct dig_correction *const b, double *const sigmas)
 {
     assert(machine != NULL && motion != NULL && a != NULL && b != NULL && sigmas != NULL);
-    const bool             used[1] = { true };
-    struct dig_machine_dig dig;
-    struct dig_air         air    = { .points = 0 };
-    double                *rest   = NULL;
-    enum dig_status        status = record(machine, motion, &dig);
+    const struct dig_machine even    = unrounded(machine);
+    const bool               used[1] = { true };
+    struct dig_machine_dig   dig;
+    struct dig_air           air    = { .points = 0 };
+    double                  *rest   = NULL;
+    enum dig_status          status = record(&even, motion, &dig);
     if (status == DIG_OK) {
-        status = dig_air_make(machine, 1, &dig, used, &air);
+        status = dig_air_make(&even, 1, &dig, used, &air);
     }
     if (status == DIG_OK) {
         rest   = malloc((2 * air.rows + 1) * sizeof *rest);

@@ -70,6 +70,7 @@ struct fault {
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
     double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
     double lost;       // readings do not arrive whose luck is worse than so many sigmas; 0: all do
+    size_t stands;     // so many samples more, as the first, before the machine moves
     size_t every;      // one sample in so many is recorded; 0: all are
     bool   warms;      // the oil's temperature is recorded, and rises
     bool   bare;       // no pressures but the bucket's
@@ -196,15 +197,17 @@ static inline struct dig_machine_recording
 record(const int kind, const size_t order, const struct fault *const fault, const uint64_t seed)
 {
     const struct dig_rig_track *const t     = &track[kind];
-    struct dig_machine_recording      r     = { t->rows, malloc(t->rows * sizeof *r.row) };
+    const size_t                      rows  = t->rows + fault->stands;
+    struct dig_machine_recording      r     = { rows, malloc(rows * sizeof *r.row) };
     struct dig_rig_noise              noise = dig_rig_noise_init(seed);
     const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
     const double                      kept  = exp(-t->step_s / 0.1);
     double                            hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
     double                            bent_m[DIG_JOINTS]       = { 0.0 };
     uint64_t                          state                    = seed;
-    for (size_t i = 0; i < t->rows; i++) {
-        const size_t       then = i > late ? i - late : 0;
+    for (size_t i = 0; i < rows; i++) {
+        const size_t       now  = i > fault->stands ? i - fault->stands : 0;
+        const size_t       then = now > late ? now - late : 0;
         struct dig_rig_row row  = t->row[then];
         push_more(&row, DIG_JOINT_BUCKET,
                   fault->dry_N * tanh(rod_mps(t, then, DIG_JOINT_BUCKET) / 0.002));
@@ -232,7 +235,7 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
             row.pressures.head_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
             row.pressures.rod_Pa[j] *= 1.0 + fault->warm_perK * above_degC;
         }
-        row.joints = t->row[i].joints;
+        row.joints = t->row[now].joints;
         for (int j = 0; j < DIG_JOINTS; j++) {
             row.joints.rad[j] += fault->angle_rad[j];
         }

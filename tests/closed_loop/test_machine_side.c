@@ -308,6 +308,31 @@ TEST(pressures_that_drift_get_no_name_and_say_what_they_follow)
     }
 }
 
+// All readings of a pose are rounded alike where noise does not move them over the step.
+TEST(quiet_sensors_of_a_machine_that_stands_raise_no_alarm_and_hide_no_seal)
+{
+    const struct dig_machine as_filed = machine;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        machine.cylinder[j].pressure_sigma_Pa *= 0.1;
+    }
+    for (uint64_t seed = 91; seed <= most(91, 93); seed++) {
+        const struct fault     stands = { .stands = 12000 }; // a minute
+        struct campaign *const c      = trace(&stands, seed);
+        for (size_t i = 0; i < c->finding.candidates; i++) {
+            print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].effect),
+                          c->finding.candidate[i].log_evidence);
+        }
+        print_message("air %.3f\n", c->finding.residual_air);
+        assert_false(c->finding.significant);
+        end(c);
+    }
+    const struct fault     both = { .stands = 3000, .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&both, 94);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+    machine = as_filed;
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
