@@ -4,6 +4,7 @@
 #include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_side_private.h"
+#include "closed_loop/machine/machine_slew.h"
 #include "core/chance.h"
 #include "core/units.h"
 #include "estimator/effects/effect.h"
@@ -85,13 +86,19 @@ static void refine(struct dig_machine_search *const s)
     dig_fit_sum(&s->fit, NULL, NULL);
 }
 
-// The equations without any effect, rows as far as their own scatter lets them be known.
+// The equations without any effect and without what slewing pulls, rows as far as their own scatter
+// lets them be known.
 static void begin(struct dig_machine_search *const s)
 {
     struct dig_fit_answer all = { .at = s->fit.at };
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
-    dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+    for (int round = 0; round < ROUNDS; round++) {
+        dig_lines_update(&s->fit.lines, all_columns);
+        dig_fit_sum(&s->fit, NULL, NULL);
+        dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+        if (!dig_slew_leave_out(&s->fit.lines, s->fit.at)) {
+            break;
+        }
+    }
     s->noise2 = 1.0;
     if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
         s->noise2 = own_noise;

@@ -5,6 +5,7 @@
 #define DIG_TESTS_CLOSED_LOOP_MACHINE_CAMPAIGN_H
 
 #include "closed_loop/machine/machine_side.h"
+#include "core/units.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/read.h"
@@ -68,13 +69,14 @@ struct fault {
     bool   was_there;              // in the first already, twice as much
     double wandering_N;            // of all drives, by a slow sine: nothing the catalogue holds
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
-    double hunting_Pa; // 1 sigma of every pressure, forgotten in a tenth of a second
-    double lost;       // readings do not arrive whose luck is worse than so many sigmas; 0: all do
-    size_t stands;     // so many samples more, as the first, before the machine moves
-    size_t every;      // one sample in so many is recorded; 0: all are
-    bool   warms;      // the oil's temperature is recorded, and rises
-    bool   bare;       // no pressures but the bucket's
-    bool   airless;    // recorded from the first touch of the ground to the last
+    double hunting_Pa;  // 1 sigma of every pressure, forgotten in a tenth of a second
+    double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
+    size_t stands;      // so many samples more, as the first, before the machine moves
+    double slews_radps; // at most, from the first of those to the last
+    size_t every;       // one sample in so many is recorded; 0: all are
+    bool   warms;       // the oil's temperature is recorded, and rises
+    bool   bare;        // no pressures but the bucket's
+    bool   airless;     // recorded from the first touch of the ground to the last
 };
 
 static inline double push_N(const int j, const double head_Pa, const double rod_Pa)
@@ -141,6 +143,25 @@ static inline double weight_N(const struct dig_rig_track *const t, const size_t 
     const double work_J = kg * ((be.x - 2.0 * is.x + was.x) / s2 * by.x +
                                 (9.81 + (be.y - 2.0 * is.y + was.y) / s2) * by.y);
     return work_J / 2e-5 / lever_m;
+}
+
+// What a drive holds more while the machine slews: by the work that the pull outward does over a
+// small turn of the joint. The slew axis lies 0.1 m behind the boom pin.
+static inline double slew_N(const struct dig_rig_row *const row, const int j, const double radps)
+{
+    double                     lever_m;
+    double                     work_J = 0.0;
+    const struct dig_rig_front at     = dig_rig_front_at(&machine, &row->joints);
+    struct dig_rig_joints      turned = row->joints;
+    turned.rad[j] += 1e-5;
+    const struct dig_rig_front to = dig_rig_front_at(&machine, &turned);
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        work_J += machine.link[k].mass_kg * radps * radps * (at.com_m[k].x + 0.1) *
+                  (to.com_m[k].x - at.com_m[k].x);
+    }
+    assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
+                     DIG_OK);
+    return -work_J / 1e-5 / lever_m;
 }
 
 static inline void lose(struct dig_sample *const sample, const enum dig_signal signal)
@@ -219,6 +240,9 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
             for (int link = j; link < DIG_JOINTS; link++) {
                 push_more(&row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
             }
+            const double part = (double)i / (double)(fault->stands + 1);
+            push_more(&row, j,
+                      slew_N(&row, j, part < 1.0 ? fault->slews_radps * sin(DIG_PI * part) : 0.0));
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;

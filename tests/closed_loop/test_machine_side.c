@@ -333,6 +333,26 @@ TEST(quiet_sensors_of_a_machine_that_stands_raise_no_alarm_and_hide_no_seal)
     machine = as_filed;
 }
 
+// No recording tells of it; what it pulls is left out, whatever else there is.
+TEST(a_machine_that_slews_raises_no_alarm_and_hides_no_seal)
+{
+    for (uint64_t seed = 101; seed <= most(101, 102); seed++) {
+        const struct fault     slews = { .stands = 1200, .slews_radps = 0.6 };
+        struct campaign *const c     = trace(&slews, seed);
+        for (size_t i = 0; i < c->finding.candidates; i++) {
+            print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].effect),
+                          c->finding.candidate[i].log_evidence);
+        }
+        print_message("air %.3f\n", c->finding.residual_air);
+        assert_false(c->finding.significant);
+        end(c);
+    }
+    const struct fault     both = { .stands = 1200, .slews_radps = 0.6, .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&both, 103);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
