@@ -171,12 +171,12 @@ static enum dig_status lay(const struct dig_machine *const           machine,
         status     = result.row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
                                         : fill(machine, options, path, every, &result, error);
     }
-    if (status != DIG_OK) {
+    if (status == DIG_OK) {
+        *track = result;
+    } else {
         free(result.row);
-        return status;
     }
-    *track = result;
-    return DIG_OK;
+    return status;
 }
 
 enum dig_status dig_rig_track_build(const struct dig_machine *const           machine,
