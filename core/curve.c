@@ -171,6 +171,28 @@ void dig_curve_smooth(const size_t n, const double t_s[], const double y[], cons
     }
 }
 
+double dig_curve_noise_left(const size_t n, const double t_s[], const size_t i, const double half_s)
+{
+    assert(t_s != NULL && i < n);
+    const double from_s = fmax(t_s[i] - half_s, t_s[0]);
+    const double to_s   = fmin(t_s[i] + half_s, t_s[n - 1]);
+    size_t       k      = i;
+    double       left   = 0.0;
+    if (!(to_s > from_s)) {
+        return 1.0;
+    }
+    while (k > 0 && t_s[k] > from_s) {
+        k--;
+    }
+    for (; k < n && t_s[k] <= to_s; k++) {
+        const double before_s = k > 0 ? fmax(t_s[k - 1], from_s) : from_s;
+        const double behind_s = k + 1 < n ? fmin(t_s[k + 1], to_s) : to_s;
+        const double weight   = 0.5 * fmax(behind_s - before_s, 0.0) / (to_s - from_s);
+        left += weight * weight;
+    }
+    return fmin(left, 1.0);
+}
+
 int dig_curve_set_find(const struct dig_curve_set *const set, const char *const name)
 {
     for (size_t t = 0; t < set->trajectories; t++) {

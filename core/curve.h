@@ -90,6 +90,11 @@ size_t dig_trajectory_phase(const struct dig_trajectory *trajectory, double time
 /// may not overlap. O(n).
 void dig_curve_smooth(size_t n, const double t_s[], const double y[], double half_s, double out[]);
 
+/// What that leaves at sample i of the variance of white noise: the squares of the weights that it
+/// gives the samples, within 5 %, as the samples next to the window's ends are weighed roughly. At
+/// most 1. O(samples in reach).
+double dig_curve_noise_left(size_t n, const double t_s[], size_t i, double half_s);
+
 /// One point of the table: a gravel, and for each trajectory the mean curve over packings and the
 /// standard deviation of ONE dig about it (n - 1; with a single packing it is NaN and the loader
 /// replaces it by the pooled relative spread).

@@ -191,31 +191,6 @@ static size_t find_spots(const struct dig_window *const window, const struct ran
     return points;
 }
 
-// What smoothing at sample i leaves of the variance of white noise: the squares of the weights that
-// dig_curve_smooth() gives the samples.
-static double noise_left(const struct dig_window *const window, const struct range range,
-                         const size_t i, const double half_s)
-{
-    const double *const at_s   = window->table_s;
-    const double        from_s = fmax(at_s[i] - half_s, at_s[range.first]);
-    const double        to_s   = fmin(at_s[i] + half_s, at_s[range.end - 1]);
-    size_t              k      = i;
-    double              left   = 0.0;
-    if (!(to_s > from_s)) {
-        return 1.0;
-    }
-    while (k > range.first && at_s[k] > from_s) {
-        k--;
-    }
-    for (; k < range.end && at_s[k] <= to_s; k++) {
-        const double before_s = k > range.first ? fmax(at_s[k - 1], from_s) : from_s;
-        const double behind_s = k + 1 < range.end ? fmin(at_s[k + 1], to_s) : to_s;
-        const double weight   = 0.5 * fmax(behind_s - before_s, 0.0) / (to_s - from_s);
-        left += weight * weight;
-    }
-    return fmin(left, 1.0);
-}
-
 // A sample's sigma after smoothing: white noise averages, the slow part does not.
 static double smoothed_sigma(const struct dig_window *const window, const struct range range,
                              const size_t i, const double half_s, const size_t channel)
@@ -223,7 +198,10 @@ static double smoothed_sigma(const struct dig_window *const window, const struct
     const double sigma  = (double)window->sample[i].sigma[channel];
     const double slow   = (double)window->sample[i].slow[channel];
     const double white2 = fmax(sigma * sigma - slow * slow, 0.0);
-    const double left   = white2 > 0.0 ? noise_left(window, range, i, half_s) : 0.0;
+    const double left =
+        white2 > 0.0 ? dig_curve_noise_left(range.end - range.first, &window->table_s[range.first],
+                                            i - range.first, half_s)
+                     : 0.0;
     return sqrt(slow * slow + left * white2);
 }
 

@@ -103,6 +103,32 @@ TEST(smoothing_is_the_mean_over_the_window_at_uneven_times)
     }
 }
 
+// A sample's weight is what smoothing makes of it alone.
+TEST(noise_is_left_as_the_squares_of_the_weights)
+{
+    enum { N = 120 };
+    double t_s[N], y[N] = { 0.0 }, out[N], squares[N] = { 0.0 };
+    double most_off = 0.0;
+    srand(8);
+    for (int i = 0; i < N; i++) {
+        t_s[i] = i == 0 ? 3.0 : t_s[i - 1] + 0.001 + 0.008 * rand() / RAND_MAX;
+    }
+    for (int one = 0; one < N; one++) {
+        y[one] = 1.0;
+        dig_curve_smooth(N, t_s, y, 0.1, out);
+        y[one] = 0.0;
+        for (int i = 0; i < N; i++) {
+            squares[i] += out[i] * out[i];
+        }
+    }
+    for (size_t i = 0; i < N; i++) {
+        most_off = fmax(most_off, fabs(dig_curve_noise_left(N, t_s, i, 0.1) / squares[i] - 1.0));
+    }
+    print_message("off by %.3f at most\n", most_off);
+    assert_true(most_off < 0.05);
+    assert_close(dig_curve_noise_left(N, t_s, 7, 0.0), 1.0, 0.0);
+}
+
 TEST(smoothing_keeps_lines_and_zero_width_keeps_all)
 {
     double t_s[50], y[50], out[50];
