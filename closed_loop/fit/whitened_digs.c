@@ -166,9 +166,9 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
             lower[i * n + j] = batch->scatter->covariance[group->trajectory][a][b] +
                                deeper[a] * deeper[b] / (root * root);
         }
-        const size_t f = group->feature[i];
-        lower[i * n + i] +=
-            sensor_variance(batch, g, f) / pow(group->amplitude[f / DIG_FEATURE_BINS], 2.0);
+        const size_t f   = group->feature[i];
+        group->sensor[f] = sqrt(sensor_variance(batch, g, f));
+        lower[i * n + i] += pow(group->sensor[f] / group->amplitude[f / DIG_FEATURE_BINS], 2.0);
     }
     if (dig_cholesky(n, lower) != DIG_OK) {
         return DIG_ENOMATCH;
@@ -208,6 +208,7 @@ void dig_whitened_digs_spread(struct dig_whitened_digs *const batch, const doubl
             group->amplitude[c] *= spread;
         }
         for (size_t k = 0; k < group->features; k++) {
+            group->sensor[group->feature[k]] *= spread;
             for (size_t i = 0; i < group->features; i++) {
                 group->whiten[k][i] /= spread;
             }

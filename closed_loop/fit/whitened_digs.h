@@ -22,6 +22,7 @@ struct dig_whitened_digs_group {
     double mean[DIG_FEATURES];                 // of the digs' y
     double about;                              // sum of squares of the digs' y about the mean
     double log_det;                            // of one dig's covariance relative to amplitude
+    double sensor[DIG_FEATURES];               // 1 sigma of the sensors, which that holds
     double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
     // What other approaches add to the mean, which was taken off: units of the table; and as it was
     // dug in few beds, variance of the mean.

@@ -2,6 +2,7 @@
 
 #include "closed_loop/recordings/alignment.h"
 #include "closed_loop/recordings/path_depth.h"
+#include "closed_loop/recordings/reading_noise.h"
 #include "core/entry_set.h"
 #include "core/units.h"
 #include "estimator/approach/approach_fit.h"
@@ -132,14 +133,16 @@ static size_t extend(const struct ends *const ends, const struct columns *const 
     return held;
 }
 
-// Smooths one channel and reads it off at the grid's progress. False, and 0 everywhere, when rows
-// lack it over more of the path than the smoothing reaches to one side.
+// Smooths one channel and reads it and its sigma off at the grid's progress. False, and 0
+// everywhere, when rows lack it over more of the path than the smoothing reaches to one side.
 static bool read_channel(const struct dig_recording *const recording, const struct columns *const c,
                          const struct ends *const ends, const double half_s,
-                         const enum dig_channel channel, double value[DIG_CURVE_POINTS])
+                         const enum dig_channel channel, double value[DIG_CURVE_POINTS],
+                         double sigma[DIG_CURVE_POINTS])
 {
-    size_t     held = hold_channel(recording, c, channel);
-    const bool told = held == c->rows || (held >= 2 && longest_gap_s(c, held) <= half_s);
+    size_t       held  = hold_channel(recording, c, channel);
+    const double noise = dig_reading_noise(held, c->raw);
+    const bool   told  = held == c->rows || (held >= 2 && longest_gap_s(c, held) <= half_s);
     if (told) {
         held = extend(ends, c, held);
         dig_curve_smooth(held, c->held_t_s, c->raw, half_s, c->smooth);
@@ -148,10 +151,12 @@ static bool read_channel(const struct dig_recording *const recording, const stru
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress = (double)k / (DIG_CURVE_POINTS - 1);
         value[k]              = 0.0;
+        sigma[k]              = 0.0;
         if (told && progress >= ends->first && progress <= ends->last) {
             at                  = dig_alignment_place(held, c->held_progress, progress, at.row);
             const double before = c->smooth[at.row];
             value[k]            = before + at.fraction * (c->smooth[at.row + 1] - before);
+            sigma[k] = noise * sqrt(dig_curve_noise_left(held, c->held_t_s, at.row, half_s));
         }
     }
     return told;
@@ -316,8 +321,8 @@ static enum dig_status observe(const struct dig_curve_set *const set,
     o.first                = ends.first;
     o.last                 = ends.last;
     for (int channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
-        o.measured[channel] =
-            read_channel(&rows, &along, &ends, half_s, (enum dig_channel)channel, o.value[channel]);
+        o.measured[channel] = read_channel(&rows, &along, &ends, half_s, (enum dig_channel)channel,
+                                           o.value[channel], o.sigma[channel]);
     }
     if (!o.measured[DIG_CHANNEL_MY_Nm]) {
         return dig_error_set(

@@ -28,6 +28,8 @@ struct dig_observed {
     bool   measured[DIG_FORCE_CHANNELS];
     double value[DIG_FORCE_CHANNELS]
                 [DIG_CURVE_POINTS]; // smoothed; 0 where not measured, and outside that range
+    double sigma[DIG_FORCE_CHANNELS]
+                [DIG_CURVE_POINTS]; // of that, by the rows: recordings/reading_noise.h
 };
 
 /// As dig_observe_recording(), all channels. The bucket may be turned against the trajectory as far

@@ -5,9 +5,36 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 // Less than this is within what the file may round.
 static const double least_more = 1.25;
+
+// How far the middle of three readings is from the mean of both beside it.
+static double off_line(const double y[3])
+{
+    return y[1] - 0.5 * (y[0] + y[2]);
+}
+
+// White noise puts a reading and the next off to either side, by its variance as a product.
+double dig_reading_noise(const size_t rows, const double value[])
+{
+    assert(rows == 0 || value != NULL);
+    double at[4]    = { 0.0 };
+    double readings = 0.0;
+    double products = 0.0;
+    for (size_t i = 0; i < rows; i++) {
+        // A row that repeats the one before is no reading of its own.
+        if (i > 0 && fabs(value[i] - value[i - 1]) <= 0.0) {
+            continue;
+        }
+        memmove(at, at + 1, 3 * sizeof at[0]);
+        at[3] = value[i];
+        readings += 1.0;
+        products += readings >= 4.0 ? off_line(at) * off_line(at + 1) : 0.0;
+    }
+    return products < 0.0 ? sqrt(-products / (readings - 3.0) * (double)rows / readings) : 0.0;
+}
 
 // Sum of squares of a signal's differences from its neighbours' mean over what white noise of
 // variance 1 makes of them, and how many.

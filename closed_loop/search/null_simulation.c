@@ -103,7 +103,7 @@ static double draw_size(const struct dig_whitened_digs *const batch, const size_
     return pow(fmax(1.0 - part + sqrt(part) * dig_chance_normal(seed), least), -1.5);
 }
 
-// One dig's scatter, whitened: a residual of the table, or normal numbers.
+// One dig's scatter, whitened: a residual of the table and the sensors', or normal numbers.
 static void draw_scatter(const struct dig_whitened_digs *const batch, const size_t g,
                          uint64_t *const seed, double y[DIG_FEATURES])
 {
@@ -118,10 +118,12 @@ static void draw_scatter(const struct dig_whitened_digs *const batch, const size
     // In the group's units a residual of the table is one of its amplitude.
     const double *const residual =
         batch->scatter->residual[group->trajectory][dig_chance_index(seed, n)];
-    const double sign = dig_chance_uniform(seed) < 0.5 ? -1.0 : 1.0;
+    const double sign       = dig_chance_uniform(seed) < 0.5 ? -1.0 : 1.0;
+    uint64_t     of_sensors = ~*seed; // numbers of their own: the table's are drawn as without
     double       feature[DIG_FEATURES];
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        feature[f] = sign * residual[f] * group->amplitude[f / DIG_FEATURE_BINS];
+        feature[f] = sign * residual[f] * group->amplitude[f / DIG_FEATURE_BINS] +
+                     group->sensor[f] * dig_chance_normal(&of_sensors);
     }
     dig_whitened_digs_whiten(group, feature, y);
 }

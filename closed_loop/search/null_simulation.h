@@ -2,9 +2,10 @@
 // significant and what fits, by simulation with refit.
 //
 // Digs are drawn about the fitted model with the table's own residuals (or normal numbers where the
-// table has none), as much larger or smaller as its few packings leave open, the errors common to a
-// trajectory with the variance the fit gave them; each draw is fitted as the campaign was. A tail
-// beyond the draws is that of the gamma distribution with their mean and variance.
+// table has none), as much larger or smaller as its few packings leave open, and the sensors'
+// noise, the errors common to a trajectory with the variance the fit gave them; each draw is fitted
+// as the campaign was. A tail beyond the draws is that of the gamma distribution with their mean
+// and variance.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H
 #define DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H

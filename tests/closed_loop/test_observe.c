@@ -2,6 +2,7 @@
 
 #include "closed_loop/recordings/observe.h"
 
+#include "core/chance.h"
 #include "core/entry_set.h"
 #include "core/units.h"
 #include "tests/testlib.h"
@@ -229,6 +230,39 @@ TEST(a_path_of_another_kind_is_refused_and_writes_nothing)
 static double straight(const double time_s)
 {
     return 3.0 * time_s;
+}
+
+// What readings of noise are off by after smoothing is what is said of them, in the middle and at
+// the ends, where less is averaged.
+TEST(noise_of_the_rows_is_known_after_smoothing)
+{
+    enum { TIMES = 300 };
+    const struct dig_curve_set set = two_digs();
+    struct dig_recording       r   = drive(&set.trajectory[0], 1.0, slow_wave);
+    struct dig_observed        clean;
+    struct dig_observed        o;
+    const size_t               at[]      = { 0, 60, 128, DIG_CURVE_POINTS - 1 };
+    double                     off2[4]   = { 0.0 };
+    double                     sigma2[4] = { 0.0 };
+    uint64_t                   seed      = 11;
+    assert_int_equal(dig_observe_dig(&set, &r, &clean, NULL), DIG_OK);
+    for (int n = 0; n < TIMES; n++) {
+        for (size_t i = 0; i < r.rows; i++) {
+            r.row[i].My_Nm = slow_wave(r.row[i].t_s - 5.0) + 0.5 * dig_chance_normal(&seed);
+        }
+        assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
+        for (size_t i = 0; i < 4; i++) {
+            off2[i] += pow(o.value[0][at[i]] - clean.value[0][at[i]], 2.0);
+            sigma2[i] += pow(o.sigma[0][at[i]], 2.0);
+            assert_true(clean.sigma[0][at[i]] < 1e-4);
+            assert_close(o.sigma[1][at[i]], 0.0, 0.0);
+        }
+    }
+    for (size_t i = 0; i < 4; i++) {
+        assert_close(off2[i] / sigma2[i], 1.0, 4.0 * sqrt(2.0 / TIMES));
+    }
+    assert_close(sigma2[1] / TIMES, 0.5 * 0.5 * 0.005 / 0.32, 0.1 * 0.5 * 0.5 * 0.005 / 0.32);
+    dig_recording_finish(&r);
 }
 
 // Rows [from, to) lack a channel.

@@ -88,4 +88,48 @@ TEST(readings_that_do_not_arrive_are_no_noise)
     dig_machine_recording_finish(&r);
 }
 
+// A force that grows and falls as grains cross the blade, over several rows each, read with noise
+// of sigma; each reading stands in so many rows.
+static double noise_read(const double sigma, const size_t in_rows)
+{
+    double  *value = calloc(ROWS, sizeof *value);
+    uint64_t seed  = 7;
+    double   knot  = 0.0;
+    double   next  = 0.0;
+    double   noise = 0.0;
+    for (size_t i = 0; i < ROWS; i++) {
+        const double within = (double)(i % 8) / 8.0;
+        if (i % 8 == 0) {
+            knot = next;
+            next = model_normal(&seed);
+        }
+        noise    = sigma * model_normal(&seed);
+        value[i] = knot + (next - knot) * within * within * (3.0 - 2.0 * within) + noise;
+        if (i % in_rows != 0) {
+            value[i] = value[i - 1];
+        }
+    }
+    const double told = dig_reading_noise(ROWS, value);
+    free(value);
+    return told;
+}
+
+TEST(what_is_white_in_a_force_is_noise_and_what_grains_do_is_not)
+{
+    assert_true(noise_read(0.0, 1) < 0.07);
+    assert_close(noise_read(0.2, 1), 0.2, 0.015);
+    assert_close(noise_read(2.0, 1), 2.0, 0.05);
+}
+
+// Of four rows that hold one reading the mean is no better than that.
+TEST(a_reading_that_stays_for_rows_counts_once)
+{
+    assert_close(noise_read(2.0, 4), 2.0 * sqrt(4.0), 0.2);
+    const double still[6] = { 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 };
+    const double three[3] = { 0.0, 9.0, 0.0 };
+    assert_close(dig_reading_noise(6, still), 0.0, 0.0);
+    assert_close(dig_reading_noise(3, three), 0.0, 0.0);
+    assert_close(dig_reading_noise(0, NULL), 0.0, 0.0);
+}
+
 TESTS_WITH(setup, NULL)

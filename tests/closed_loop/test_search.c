@@ -82,6 +82,33 @@ TEST(nothing_is_found_where_nothing_is)
     assert_true(alarms <= 1);
 }
 
+// What is drawn of digs whose sensors are loud scatters as they do, by one.
+TEST(digs_are_drawn_with_the_noise_of_their_sensors)
+{
+    enum { MANY = 40 };
+    static const struct dig_hypothesis plain                         = { .effects = 0 };
+    const struct dig_gravel            gravel                        = { { 0.6, 0.55, 2500 } };
+    const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_measured               *loud                          = calloc(MANY, sizeof *loud);
+    struct dig_whitened_digs          *drawn                         = malloc(2 * sizeof *drawn);
+    struct dig_fitted                  fitted;
+    uint64_t                           seed = 5;
+    dig_in_turn(MANY, &gravel, 0, NULL, NULL, &seed, loud);
+    for (size_t i = 0; i < MANY; i++) {
+        dig_add_noise(3.0, &seed, &loud[i]);
+    }
+    batch_digs(MANY, loud, &gravel, drawn);
+    drawn[1] = drawn[0];
+    dig_hypothesis_fit(drawn, &plain, start, DIG_FIT_BARE, &fitted);
+    dig_null_simulation_digs(drawn, &fitted, &seed, &drawn[1]);
+    for (size_t g = 0; g < drawn->groups; g++) {
+        const double freedom = (double)(drawn->group[g].features * (drawn->group[g].digs - 1));
+        assert_close(drawn[1].group[g].about / freedom, 1.0, 5.0 * sqrt(2.0 / freedom) + 0.05);
+    }
+    free(drawn);
+    free(loud);
+}
+
 TEST(an_effect_is_named_and_measured)
 {
     static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_ADHESION,

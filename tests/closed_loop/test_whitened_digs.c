@@ -38,6 +38,28 @@ TEST(digs_of_one_gravel_scatter_by_one)
     free(measured);
 }
 
+// So they do where sensors are loud, at most: that their noise averages over a bin is not counted
+// on, which makes it 1.4 to 2.5 times as large.
+TEST(digs_with_noise_scatter_by_no_more_than_one)
+{
+    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
+    struct dig_whitened_digs *batch    = batch_of(measured);
+    uint64_t                  seed     = 9;
+    for (size_t i = 0; i < DIGS; i++) {
+        dig_add_noise(3.0, &seed, &measured[i]);
+    }
+    batch_digs(DIGS, measured, &gravel, batch);
+    for (size_t g = 0; g < batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &batch->group[g];
+        const double freedom = (double)(group->features * (group->digs - 1));
+        print_message("%s: %.2f\n", world.set->trajectory[group->trajectory].name,
+                      group->about / freedom);
+        assert_true(group->about / freedom > 1.0 / 2.7 && group->about / freedom < 1.0);
+    }
+    free(batch);
+    free(measured);
+}
+
 TEST(what_the_machine_adds_is_taken_off)
 {
     struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
@@ -100,6 +122,7 @@ TEST(digs_and_models_shrink_alike)
     double                    model[2][DIG_FEATURES];
     double                    y[2][DIG_FEATURES];
     const double              about = batch->group[1].about;
+    batch->group[1].sensor[3]       = 2.0;
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         feature[f] = 0.1 * (double)(f % 7);
     }
@@ -115,6 +138,7 @@ TEST(digs_and_models_shrink_alike)
         assert_close(1.5 * y[1][f], y[0][f], 1e-9);
     }
     assert_close(1.5 * 1.5 * batch->group[1].about, about, 1e-6);
+    assert_close(batch->group[1].sensor[3], 1.5 * 2.0, 1e-12);
     free(batch);
     free(measured);
 }

@@ -93,6 +93,29 @@ check "... and its ratio to the density, by which it acts, measured to a fifth" 
 trace obstacle
 check "a rock in the way is named" [ "$(verdict obstacle)" = '"obstacle"' ]
 
+# By a force sensor whose noise is three tenths of each channel's rms.
+seed=0
+noisy() { # GRAVEL: its beds, as noisy_GRAVEL into $work/noisy
+    mkdir -p "$work/noisy"
+    for dig in "$data/${1}"_seed?__*.csv; do
+        awk -F, -v OFS=, -v seed="$((seed += 1))" 'BEGIN { srand(seed) }
+            function normal() { return sqrt(-2 * log(1 - rand())) * cos(6.28318531 * rand()) }
+            /^t_s/ { for (i = 1; i <= NF; i++) if ($i ~ /^(Fx_N|Fz_N|My_Nm)$/) at[i] = 1 }
+            NR == FNR { n += /^[0-9]/; for (i in at) square[i] += $i ^ 2; next }
+            /^[0-9]/ { for (i in at) $i += .3 * sqrt(square[i] / n) * normal() }
+            { print }' "$dig" "$dig" >"$work/noisy/noisy_$(basename "$dig")"
+    done
+}
+for gravel in mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200 obstacle; do noisy $gravel; done
+plain=$data data=$work/noisy
+for gravel in noisy_mu0.4_mur0.6_rho2000 noisy_mu0.6_mur0.6_rho2200; do
+    trace $gravel
+    check "$gravel: nothing is missing" [ "$(verdict $gravel)" = '"none"' ]
+done
+trace noisy_obstacle
+check "a rock in the way is named beside noise" [ "$(verdict noisy_obstacle)" = '"obstacle"' ]
+data=$plain
+
 # A bucket of friction .15 in gravel of .6; the table's is as rough as the gravel.
 data=$PWD/tests/data/liggghts_bucket
 smooth=mu0.6_mur0.4_rho2500_bucket0.15

@@ -136,6 +136,7 @@ static enum dig_status measure_force(const struct digloop_job *const            
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         m->measured[c] = o.measured[c];
         memcpy(m->value[c], o.value[c], sizeof m->value[c]);
+        memcpy(m->sigma[c], o.sigma[c], sizeof m->sigma[c]);
     }
     return DIG_OK;
 }
