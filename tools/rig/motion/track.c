@@ -166,17 +166,19 @@ static enum dig_status lay(const struct dig_machine *const           machine,
     if (search) {
         status = dig_rig_placement_find(machine, path, &result.placement, error);
     }
+    struct dig_rig_row *const row = malloc(result.rows * sizeof *row);
+    result.row                    = row;
     if (status == DIG_OK) {
-        result.row = malloc(result.rows * sizeof result.row[0]);
-        status     = result.row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
-                                        : fill(machine, options, path, every, &result, error);
+        status = row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
+                             : fill(machine, options, path, every, &result, error);
     }
-    if (status == DIG_OK) {
-        *track = result;
-    } else {
-        free(result.row);
+    if (status != DIG_OK) {
+        free(row);
+        return status;
     }
-    return status;
+    *track     = result;
+    track->row = row; // which the analyzer does not see in the struct
+    return DIG_OK;
 }
 
 enum dig_status dig_rig_track_build(const struct dig_machine *const           machine,
