@@ -102,12 +102,16 @@ static void carry(const struct dig_machine_side *const side, const double value[
     dig_lines_carry(side->own_payload_kg[dig], &common.payload, payload);
 }
 
-// What the effects of the machine among these say of one dig.
+// What the effects of the machine among these, and what the file has wrong, say of one dig.
 static enum dig_status correction_of(const struct dig_machine_side *const side,
                                      const size_t effects, const struct dig_model_effect effect[],
-                                     const size_t dig, struct dig_correction *const correction)
+                                     const double *const file, const size_t dig,
+                                     struct dig_correction *const correction)
 {
     struct dig_correction sum = { .delay_s = 0.0 };
+    if (file != NULL) {
+        dig_file_correct(file, &sum);
+    }
     for (size_t e = 0; e < effects; e++) {
         const enum dig_effect_id id = effect[e].effect;
         if (!dig_effect_is_of_machine(id)) {
@@ -142,10 +146,7 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
         if (apply != DIG_APPLY_TO_ALL && measured[d].use == DIG_USE_HOLDOUT) {
             continue;
         }
-        status = correction_of(side, effects, effect, d, &correction);
-        if (status == DIG_OK && file != NULL) {
-            dig_file_correct(file, &correction);
-        }
+        status = correction_of(side, effects, effect, file, d, &correction);
         if (status == DIG_OK) {
             status = dig_machine_dig_measure(
                 &side->machine, side->set, &side->dig[d], &correction,

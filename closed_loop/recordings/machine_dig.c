@@ -430,7 +430,7 @@ static enum dig_status check_jump(const struct dig_machine_dig *const dig,
                                   struct dig_error *const             error)
 {
     struct dig_pose_jump jump;
-    if (dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
+    if (dig->samples > 0 && dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s jumps by %.2g rad after t_s %.9g, where no machine moves so: "
                              "expected angles in rad, and one recording a file",

@@ -181,48 +181,50 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
                 to);
 }
 
+// Of a trace that found no effect.
+static const char *nothing_of(const struct dig_trace *const trace)
+{
+    if (trace->beyond) {
+        return trace->applied ? "No effect is missing: the gravel lies beyond the table, and the "
+                                "prediction is made with it."
+                              : "No effect is missing: the gravel lies beyond the table, and the "
+                                "prediction is not surely better with it and stays as it was.";
+    }
+    return trace->significant ? "Something is missing, but none of the effects known explains it."
+           : trace->no_air    ? "Nothing is missing in the soil; no free air tells of the machine."
+                              : "Nothing is missing: what is left is within the noise.";
+}
+
+static void put_found(const struct dig_trace *const trace, const size_t e, const size_t size,
+                      char text[])
+{
+    const struct dig_model_effect *const effect = &trace->effect[e];
+
+    const bool unlisted = effect->effect == DIG_EFFECT_UNLISTED;
+    dig_text_add(size, text, "%s",
+                 unlisted ? "an effect that has no name here" : dig_effect_name(effect->effect));
+    if (unlisted && trace->unlisted != NULL && trace->unlisted->depends_on[0] != '\0') {
+        dig_text_add(size, text, ", which depends on %s", trace->unlisted->depends_on);
+    }
+    dig_text_add(size, text, " (probability %.2f, seen in %s)", effect->probability,
+                 trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
+                                                      : dig_part_name(trace->seen_in[e]));
+    if (!unlisted) {
+        dig_text_add(size, text, ": %s", dig_effect_of(effect->effect)->summary);
+    }
+}
+
 void dig_trace_sentence(const struct dig_trace *const trace, const size_t size, char text[])
 {
     assert(trace != NULL && text != NULL && size > 0);
     text[0] = '\0';
-    if (trace->effects == 0 && trace->beyond) {
-        dig_text_add(
-            size, text,
-            "No effect is missing: the gravel lies beyond the table, and the prediction %s.",
-            trace->applied ? "is made with it"
-                           : "is not surely better with it and stays as it was");
-        return;
-    }
-    if (trace->effects == 0) {
-        dig_text_add(
-            size, text, "%s",
-            trace->significant ? "Something is missing, but none of the effects known explains it."
-            : trace->no_air    ? "Nothing is missing in the soil; no free air tells of the machine."
-                               : "Nothing is missing: what is left is within the noise.");
-        return;
-    }
-    dig_text_add(size, text, "Missing: ");
+    dig_text_add(size, text, "%s", trace->effects == 0 ? nothing_of(trace) : "Missing: ");
     for (size_t e = 0; e < trace->effects; e++) {
-        const struct dig_model_effect *const effect = &trace->effect[e];
-        if (e > 0) {
-            dig_text_add(size, text, "%s", e + 1 == trace->effects ? "; and " : "; ");
-        }
-        if (effect->effect == DIG_EFFECT_UNLISTED) {
-            dig_text_add(size, text, "an effect that has no name here");
-            if (trace->unlisted != NULL && trace->unlisted->depends_on[0] != '\0') {
-                dig_text_add(size, text, ", which depends on %s", trace->unlisted->depends_on);
-            }
-        } else {
-            dig_text_add(size, text, "%s", dig_effect_name(effect->effect));
-        }
-        dig_text_add(size, text, " (probability %.2f, seen in %s)", effect->probability,
-                     trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"
-                                                          : dig_part_name(trace->seen_in[e]));
-        if (effect->effect != DIG_EFFECT_UNLISTED) {
-            dig_text_add(size, text, ": %s", dig_effect_of(effect->effect)->summary);
-        }
+        const bool last = e + 1 == trace->effects;
+        dig_text_add(size, text, "%s", e == 0 ? "" : last ? "; and " : "; ");
+        put_found(trace, e, size, text);
+        dig_text_add(size, text, "%s", last ? "." : "");
     }
-    dig_text_add(size, text, ".");
 }
 
 void dig_trace_not_applied(const struct dig_trace *const trace, const size_t size, char text[])
