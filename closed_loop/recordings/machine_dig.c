@@ -430,7 +430,7 @@ static enum dig_status check_jump(const struct dig_machine_dig *const dig,
                                   struct dig_error *const             error)
 {
     struct dig_pose_jump jump;
-    if (dig->samples > 0 && dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
+    if (dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s jumps by %.2g rad after t_s %.9g, where no machine moves so: "
                              "expected angles in rad, and one recording a file",
@@ -452,11 +452,14 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
            .point  = malloc(rows * sizeof *v.point),
            .sample = malloc(rows * sizeof *v.sample),
     };
-    struct dig_machine_dig made   = { .samples = 0 };
-    enum dig_status        status = v.point != NULL && v.sample != NULL
-                                        ? take_samples(machine, recording, &made, error)
-                                        : dig_error_set(error, DIG_ENOMEM, "%zu samples", rows);
-    made.lambda                   = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    struct dig_machine_dig made = { .samples = 0 };
+    if (v.point == NULL || v.sample == NULL) {
+        free(v.point);
+        free(v.sample);
+        return dig_error_set(error, DIG_ENOMEM, "%zu samples", rows);
+    }
+    enum dig_status status = take_samples(machine, recording, &made, error);
+    made.lambda            = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     if (status == DIG_OK) {
         status = check_jump(&made, error);
     }

@@ -96,29 +96,29 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
-    const uint32_t          i    = list->i[first + c];
-    const struct dig_motion m    = dig_grains_motion(&w->grains, i);
-    struct near_plates      near = { .count = 0 };
+    const uint32_t          i = list->i[first + c];
+    const struct dig_motion m = dig_grains_motion(&w->grains, i);
+    struct near_plates      near;
     double                  body_m[3];
     dig_tool_to_body(w->tool, m.x_m, body_m);
     size_t used   = 0;
     size_t in_use = 0;
     while (c + used < count && list->i[first + c + used] == i) {
-        const size_t k     = near.count;
-        const size_t plate = list->j[first + c + used] - w->walls;
+        const size_t k     = used;
+        const size_t plate = list->j[first + c + k] - w->walls;
         dig_bucket_closest(&w->tool->bucket, plate, body_m, near.closest_m[k]);
-        near.contact[k]    = first + c + used;
+        near.contact[k]    = first + c + k;
         near.plate[k]      = plate;
         near.distance_m[k] = dig_bucket_distance(body_m, near.closest_m[k]);
         near.is_contact[k] = near.distance_m[k] < radius_m;
         in_use += near.is_contact[k];
-        near.count++;
         used++;
     }
+    near.count = used;
     if (in_use > 1) {
         resolve_edges(w->tool, radius_m, &near, list);
     }
-    for (size_t k = 0; k < near.count; k++) {
+    for (size_t k = 0; k < used; k++) {
         if (near.is_contact[k]) {
             fill_plate(w->tool, body_m, near.closest_m[k], &m, c + k, block, arm_m[c + k]);
         } else {
