@@ -91,6 +91,7 @@ TEST(digs_are_drawn_with_the_noise_of_their_sensors)
     const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     struct dig_measured               *loud                          = calloc(MANY, sizeof *loud);
     struct dig_whitened_digs          *drawn                         = malloc(2 * sizeof *drawn);
+    struct dig_common_error            error[DIG_TRAJECTORY_MAX];
     struct dig_fitted                  fitted;
     uint64_t                           seed = 5;
     dig_in_turn(MANY, &gravel, 0, NULL, NULL, &seed, loud);
@@ -100,7 +101,8 @@ TEST(digs_are_drawn_with_the_noise_of_their_sensors)
     batch_digs(MANY, loud, &gravel, drawn);
     drawn[1] = drawn[0];
     dig_hypothesis_fit(drawn, &plain, start, DIG_FIT_BARE, &fitted);
-    dig_null_simulation_digs(drawn, &fitted, &seed, &drawn[1]);
+    dig_hypothesis_errors(drawn, &fitted, error);
+    dig_null_simulation_digs(drawn, &fitted, error, &seed, &drawn[1]);
     for (size_t g = 0; g < drawn->groups; g++) {
         const double freedom = (double)(drawn->group[g].features * (drawn->group[g].digs - 1));
         assert_close(drawn[1].group[g].about / freedom, 1.0, 5.0 * sqrt(2.0 / freedom) + 0.05);

@@ -64,7 +64,7 @@ check "the model goes on from the eighth dig" eval 'tr -d " \n" <"$work/model.js
 check "the page has its number and every dig before and after it" \
     eval 'grep -q "<th>thaw: softening" "$work/with.html" && [ "$(grep -c ">after</text>" "$work/with.html")" = 24 ]'
 ln -s "$(realpath "$table")" "$work/alone.sqlite"
-"$copy/build/bin/digloop" trace "$work/alone.sqlite" "$work/no_campaign" --json - >/dev/null 2>"$work/err"
+"$copy/build/bin/digloop" trace "$work/alone.sqlite" "$work/thaw" --json - >/dev/null 2>"$work/err"
 check "it is among those that need no table of effects" grep -q "need no beds (.*thaw.*)" "$work/err"
 "$BIN/digloop" trace "$table" "$work/thaw" --json "$work/without.json" 2>"$work/err"
 check "without it nothing of the list is named" is "$(verdict without)" '"unlisted"'
