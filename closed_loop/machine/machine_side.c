@@ -155,7 +155,9 @@ enum dig_status dig_machine_side_apply(const struct dig_machine_side *const side
         for (int c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
             const bool both = measured[d].measured[c] && corrected.measured[c];
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                machine[d][c][k] = both ? measured[d].value[c][k] - corrected.value[c][k] : 0.0;
+                // As it was measured: what another approach adds may be taken off by now.
+                const double value = measured[d].value[c][k] + measured[d].added.value[c][k];
+                machine[d][c][k]   = both ? value - corrected.value[c][k] : 0.0;
             }
         }
     }

@@ -110,7 +110,11 @@ static void fill_decision(const struct dig_trace_work *const w, struct dig_trace
 // the gravel and is no effect.
 static bool is_as_filed(const struct dig_trace_work *const w)
 {
-    return w->air->effects == 0 && !w->search->significant && w->open->answer.numbers > 0;
+    bool as_filed = true;
+    for (size_t f = 0; f < DIG_FILE_ERRORS; f++) {
+        as_filed = as_filed && !(fabs(w->open->answer.file[f]) > 0.0);
+    }
+    return w->air->effects == 0 && !w->search->significant && !as_filed;
 }
 
 // A change is named, but not made, that is likely to make the next dig's error worse, or that has
