@@ -8,9 +8,10 @@
 #include <string.h>
 
 // How wide the prior of an effect may be, in its parameters' scales. With one width for all, a weak
-// effect of many parameters would be given to another that has fewer.
-static const double width[] = { 1.0, 0.25, 0.0625, 0.015625 };
-enum { WIDTHS = sizeof width / sizeof width[0] };
+// effect of many parameters would be given to another that has fewer, and of a strong one the rest
+// to what the file may have wrong.
+static const double width[] = { 4.0, 1.0, 0.25, 0.0625, 0.015625 };
+enum { WIDTHS = sizeof width / sizeof width[0], SCALE = 1, WIDTHS_OF_SETS = SCALE + 1 };
 
 // A step is halved so often.
 enum { HALVINGS = 6 };
@@ -181,7 +182,7 @@ void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double 
 
     struct dig_fit_answer best = { .at = NULL };
     double                effects[DIG_LINES_COLUMNS_MAX];
-    give_width(fit, DIG_MACHINE_ALL_EFFECTS, width[0], effects);
+    give_width(fit, DIG_MACHINE_ALL_EFFECTS, width[SCALE], effects);
     fit->s2 = 1.0;
     dig_fit_solve_each(fit, widths != NULL ? widths : effects, &best);
     const double free_rows = fmax(fit->rows - (double)n, 0.25 * fit->rows);
@@ -193,8 +194,9 @@ void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double 
 static size_t width_of(const struct dig_fit *const fit, const unsigned set)
 {
     struct dig_fit_answer best = { .log_evidence = -INFINITY };
-    size_t                wide = 0;
-    for (size_t w = 0; (set & (set - 1U)) == 0 && w < WIDTHS; w++) {
+    size_t                wide = SCALE;
+    const size_t          most = (set & (set - 1U)) == 0 ? WIDTHS : WIDTHS_OF_SETS;
+    for (size_t w = 0; w < most; w++) {
         struct dig_fit_answer tried = { .at = NULL };
         solve_at(fit, set, w, &tried);
         if (tried.log_evidence > best.log_evidence) {
@@ -217,7 +219,7 @@ void dig_fit_solve_wide(const struct dig_fit *const fit, const unsigned set,
                         struct dig_fit_answer *const answer)
 {
     assert(fit != NULL && answer != NULL);
-    solve_at(fit, set, 0, answer);
+    solve_at(fit, set, SCALE, answer);
     answer->log_evidence -= log(WIDTHS);
 }
 
