@@ -106,10 +106,10 @@ enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_er
     struct dig_trace       *trace    = calloc(1, sizeof *trace);
     enum dig_status         status   = trace != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
-        status = digloop_campaign_load(job, &campaign, error);
+        status = digloop_load_effects(job, path, &effects, error);
     }
     if (status == DIG_OK) {
-        status = digloop_load_effects(job, path, &effects, error);
+        status = digloop_campaign_load(job, &campaign, error);
     }
     if (status == DIG_OK) {
         const struct dig_trace_settings settings = dig_trace_settings_default();
