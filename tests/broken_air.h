@@ -5,7 +5,7 @@
 #ifndef DIG_TESTS_BROKEN_AIR_H
 #define DIG_TESTS_BROKEN_AIR_H
 
-#include "closed_loop/machine/machine_check.h"
+#include "closed_loop/check/machine_check.h"
 #include "core/recording.h"
 #include "files/machine_yaml.h"
 #include "tools/rig/motion/track.h"

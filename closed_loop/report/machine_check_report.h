@@ -1,11 +1,11 @@
-// The check of a machine file in free air (closed_loop/machine/machine_check.h) as people and
+// The check of a machine file in free air (closed_loop/check/machine_check.h) as people and
 // programs read it: a checklist for a terminal, one JSON object, one self-contained HTML page. Keys
 // and units: docs/formats/trace.md.
 
 #ifndef DIG_CLOSED_LOOP_REPORT_MACHINE_CHECK_REPORT_H
 #define DIG_CLOSED_LOOP_REPORT_MACHINE_CHECK_REPORT_H
 
-#include "closed_loop/machine/machine_check.h"
+#include "closed_loop/check/machine_check.h"
 #include "core/error.h"
 
 #include <stdio.h>

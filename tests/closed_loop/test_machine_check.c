@@ -1,4 +1,4 @@
-// Tests for closed_loop/machine/machine_check.c, machine_check_recording.c, machine_reading.c and
+// Tests for closed_loop/check/machine_check.c, machine_check_recording.c, machine_reading.c and
 // machine_causes.c: the rig's machines by virtual work, broken in one way at a time.
 // DIG_TEST_ALL=1: every break of every machine. DIG_TEST_QUICK=1: every sixteenth.
 

@@ -1,6 +1,6 @@
 // digloop check: what a machine's file makes of a recording in free air.
 
-#include "closed_loop/machine/machine_check.h"
+#include "closed_loop/check/machine_check.h"
 #include "closed_loop/report/machine_check_report.h"
 #include "files/machine_yaml.h"
 #include "files/text/whole.h"

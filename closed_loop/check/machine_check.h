@@ -10,10 +10,10 @@
 // One recording cannot show everything: what it does not tell is said so, and causes that explain
 // it as well as the one named are named with it.
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_H
+#ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_H
+#define DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_H
 
-#include "closed_loop/machine/machine_reading.h"
+#include "closed_loop/check/machine_reading.h"
 #include "core/error.h"
 #include "core/machine.h"
 #include "core/recording.h"
@@ -96,4 +96,4 @@ dig_machine_air_check_run(const struct dig_machine           *machine,
 
 void dig_machine_air_check_finish(struct dig_machine_air_check *check);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_H
+#endif // DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_H

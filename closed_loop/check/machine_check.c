@@ -1,8 +1,8 @@
-#include "closed_loop/machine/machine_check.h"
+#include "closed_loop/check/machine_check.h"
 
+#include "closed_loop/check/machine_causes.h"
+#include "closed_loop/check/machine_check_private.h"
 #include "closed_loop/machine/machine_air.h"
-#include "closed_loop/machine/machine_causes.h"
-#include "closed_loop/machine/machine_check_private.h"
 #include "closed_loop/recordings/reading_noise.h"
 
 #include <assert.h>

@@ -6,8 +6,8 @@
 // being mixed up, so what is left counts in shares of the load, after a constant force and a factor
 // of the load within bounds are taken off. What is finer is told by the fit (machine_check.h).
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H
+#ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H
+#define DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H
 
 #include "closed_loop/machine/machine_air.h"
 #include "closed_loop/recordings/machine_dig.h"
@@ -62,4 +62,4 @@ DIG_MUST_CHECK enum dig_status dig_reading_find(const struct dig_machine *machin
                                                 const bool                  moves[DIG_JOINTS],
                                                 struct dig_reading_finding *finding);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_READING_H
+#endif // DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H

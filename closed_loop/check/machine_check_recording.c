@@ -1,6 +1,6 @@
 // What a recording says by itself, before anything is balanced.
 
-#include "closed_loop/machine/machine_check_private.h"
+#include "closed_loop/check/machine_check_private.h"
 #include "core/linkage.h"
 #include "core/units.h"
 #include "estimator/wrench/correction.h"

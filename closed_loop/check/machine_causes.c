@@ -1,4 +1,4 @@
-#include "closed_loop/machine/machine_causes.h"
+#include "closed_loop/check/machine_causes.h"
 
 #include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_lines.h"

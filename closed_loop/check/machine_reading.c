@@ -1,4 +1,4 @@
-#include "closed_loop/machine/machine_reading.h"
+#include "closed_loop/check/machine_reading.h"
 
 #include "core/linkage.h"
 #include "core/units.h"

@@ -1,9 +1,9 @@
-// Inside of the check of a machine file, for closed_loop/machine/machine_check*.c.
+// Inside of the check of a machine file, for closed_loop/check/machine_check*.c.
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_PRIVATE_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_PRIVATE_H
+#ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_PRIVATE_H
+#define DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_PRIVATE_H
 
-#include "closed_loop/machine/machine_check.h"
+#include "closed_loop/check/machine_check.h"
 #include "closed_loop/recordings/machine_dig.h"
 #include "core/units.h"
 
@@ -30,4 +30,4 @@ void dig_check_stuck(const struct dig_machine *machine, struct dig_machine_recor
 void dig_check_motion(const struct dig_machine *machine, const struct dig_machine_dig *dig,
                       struct dig_machine_air_check *check);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_CHECK_PRIVATE_H
+#endif // DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_PRIVATE_H

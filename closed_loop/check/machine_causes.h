@@ -6,8 +6,8 @@
 // one that is named a cause has a wide one. Causes join while the evidence grows by more than
 // log(causes / false alarm), as effects do (machine_fit.h).
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_CAUSES_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_CAUSES_H
+#ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_CAUSES_H
+#define DIG_CLOSED_LOOP_CHECK_MACHINE_CAUSES_H
 
 #include "closed_loop/machine/machine_air.h"
 #include "closed_loop/recordings/machine_dig.h"
@@ -50,4 +50,4 @@ DIG_MUST_CHECK enum dig_status dig_causes_find(struct dig_air *air, const bool m
                                                struct dig_causes    *causes,
                                                struct dig_correction correction[]);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_CAUSES_H
+#endif // DIG_CLOSED_LOOP_CHECK_MACHINE_CAUSES_H
