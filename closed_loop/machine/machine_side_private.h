@@ -1,4 +1,4 @@
-// Inside of the machine side, for closed_loop/machine_*.c.
+// Inside of the machine side, for closed_loop/machine/.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_PRIVATE_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_PRIVATE_H
