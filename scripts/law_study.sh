@@ -17,8 +17,8 @@ study() { # NAME SED LAWS
     printf 'scene: rig\nrecordings:\n  - {file: simpleA.csv, trajectory: simpleA, role: identify}\n  - {file: actual.csv, trajectory: actual, role: fit}\n' \
         >"$to/campaign.yaml"
     echo "== $1"
-    "$bin/digloop" trace tables/reference_rig.sqlite "$to" --json "$to/trace.json" 2>/dev/null | sed -n 1,2p
-    sed -nE '/"material"/{s/"material": //; s/[{}"]//g; p}' "$to/trace.json"
+    "$bin/digloop" trace tables/reference_rig.sqlite "$to" --json "$to/trace.json" 2>/dev/null
+    sed -nE '/^ "(verdict|material)"/{s/"material": //; s/[]["{}]//g; s/,$//; p}' "$to/trace.json"
 }
 
 study plain '' ''
