@@ -272,6 +272,11 @@ static struct answer best_answer(const struct search *const s, costs cost, const
     return best;
 }
 
+static void lower(double *const least, const double cost)
+{
+    *least = cost < *least ? cost : *least;
+}
+
 static void keep(struct search *const s, struct dig_reading reading,
                  const struct answer answer[DIG_JOINTS], const double cost)
 {
@@ -284,8 +289,7 @@ static void keep(struct search *const s, struct dig_reading reading,
         given[DIG_READING_SWAPPED][j] = answer[j].swapped;
         given[DIG_READING_FACTOR][j]  = answer[j].factor;
         for (size_t q = 0; q < DIG_READING_QUESTIONS; q++) {
-            double *const least = &s->least[q][j][given[q][j]];
-            *least              = cost < *least ? cost : *least;
+            lower(&s->least[q][j][given[q][j]], cost);
         }
     }
     if (cost < s->cost) {
@@ -308,12 +312,13 @@ static void try_order(struct search *const s, const struct dig_reading *const re
     }
     keep(s, *reading, best, sum);
     for (size_t i = 0; i < (size_t)DIG_JOINTS * 2 * FACTORS; i++) {
-        const size_t  j               = i % DIG_JOINTS;
-        const size_t  w               = i / DIG_JOINTS % 2;
-        struct answer one[DIG_JOINTS] = { best[0], best[1], best[2] };
-
-        one[j] = answer_of(s, cost, j, reading->drive[j], w, i / DIG_JOINTS / 2, common);
-        keep(s, *reading, one, sum - best[j].cost + one[j].cost);
+        const size_t        j    = i % DIG_JOINTS;
+        const size_t        w    = i / DIG_JOINTS % 2;
+        const size_t        f    = i / DIG_JOINTS / 2;
+        const struct answer one  = answer_of(s, cost, j, reading->drive[j], w, f, common);
+        const double        with = sum - best[j].cost + one.cost;
+        lower(&s->least[DIG_READING_SWAPPED][j][w], with);
+        lower(&s->least[DIG_READING_FACTOR][j][f], with);
     }
 }
 

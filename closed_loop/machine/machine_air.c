@@ -225,7 +225,7 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
         .point   = malloc(points * sizeof *made.point),
         .row     = malloc(DIG_JOINTS * points * sizeof *made.row),
         .segment = malloc((2 * digs + 1) * sizeof *made.segment),
-        .scratch = malloc((size_t)(3 * DIG_JOINTS) * points * sizeof *made.scratch),
+        .scratch = malloc((size_t)(2 * DIG_JOINTS) * points * sizeof *made.scratch),
         .pose    = calloc(points, sizeof *made.pose),
     };
     if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL ||

@@ -79,7 +79,7 @@ struct dig_air {
     struct dig_air_point   *point;
     struct dig_air_row     *row;
     struct dig_air_segment *segment;
-    double                 *scratch; // [9 * points]
+    double                 *scratch; // [6 * points]
     struct dig_air_pose    *pose;    // [points]
 };
 

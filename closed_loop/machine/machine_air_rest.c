@@ -86,13 +86,13 @@ static bool alike(const struct dig_correction *const a, const struct dig_correct
     return i == to;
 }
 
-// What is left of the joints at one point, N at the rods, what friction takes of it, and what it
-// may take more.
+// What is left of the joints at one point, N at the rods, and what friction takes of it; held: what
+// it may take more.
 static void rest_at(const struct dig_machine *const    corrected,
                     const struct dig_correction *const correction,
-                    struct dig_air_point *const point, const bool calm,
+                    struct dig_air_point *const point, const bool calm, const bool held,
                     struct dig_air_pose *const kept, double rest_N[DIG_JOINTS],
-                    double loss_N[DIG_JOINTS], double more_N[DIG_JOINTS])
+                    double taken_N[DIG_JOINTS])
 {
     for (size_t c = 0; calm && c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
         point->sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = point->calm_Pa[c];
@@ -103,24 +103,23 @@ static void rest_at(const struct dig_machine *const    corrected,
     const struct dig_air_pose *const pose =
         read ? pose_of(corrected, &readings, &point->rates, kept) : NULL;
     for (int j = 0; j < DIG_JOINTS; j++) {
-        rest_N[j] = 0.0;
-        loss_N[j] = 0.0;
-        more_N[j] = 0.0;
+        rest_N[j]  = 0.0;
+        taken_N[j] = 0.0;
         if (pose != NULL && pose->lever_ok[j]) {
             const struct dig_friction *const friction = &correction->friction[j];
 
             const double arm_m   = pose->arm_m[j];
             const double push_N  = readings.push[j].push_N;
             const double rod_mps = arm_m * point->rates.velocity_radps[j];
+            const double loss_N  = dig_friction_loss_N(friction, push_N, rod_mps);
             rest_N[j]            = (arm_m * push_N + pose->mass_Nm[j]) / arm_m;
-            loss_N[j]            = dig_friction_loss_N(friction, push_N, rod_mps);
-            more_N[j]            = held_N(friction, push_N, rod_mps, loss_N[j]);
+            taken_N[j]           = held ? held_N(friction, push_N, rod_mps, loss_N) : loss_N;
         }
     }
 }
 
 // Friction turns about at once where a motion does; averaged over the kernel as all else is.
-static double smooth_at(const double (*const loss_N)[DIG_JOINTS], const size_t points,
+static double smooth_at(const double (*const taken_N)[DIG_JOINTS], const size_t points,
                         const size_t at, const size_t joint)
 {
     double sum    = 0.0;
@@ -130,22 +129,22 @@ static double smooth_at(const double (*const loss_N)[DIG_JOINTS], const size_t p
         const double w = (1.0 - u * u) * (1.0 - u * u);
         const size_t i = at + (size_t)KERNEL + (size_t)(k + KERNEL);
         if (i >= 2 * (size_t)KERNEL && i - 2 * (size_t)KERNEL < points) {
-            sum += w * loss_N[i - 2 * (size_t)KERNEL][joint];
+            sum += w * taken_N[i - 2 * (size_t)KERNEL][joint];
             weight += w;
         }
     }
     return sum / weight;
 }
 
-// All of every point of a segment into the scratch: rests, losses, what may be lost more.
+// All of every point of a segment into the scratch: rests, and what friction takes, or may take
+// more.
 static void rest_of(const struct dig_air *const air, const size_t s,
-                    const struct dig_correction *const correction, const bool calm)
+                    const struct dig_correction *const correction, const bool calm, const bool held)
 {
     double(*const rest_N)[DIG_JOINTS]         = (double(*)[DIG_JOINTS])(void *)air->scratch;
     struct dig_air_segment *const     segment = &air->segment[s];
     const struct dig_air_point *const point   = &air->point[segment->first_point];
-    double(*const loss_N)[DIG_JOINTS]         = rest_N + segment->points;
-    double(*const more_N)[DIG_JOINTS]         = loss_N + segment->points;
+    double(*const taken_N)[DIG_JOINTS]        = rest_N + segment->points;
     const struct dig_machine   corrected      = dig_correction_machine(&air->machine, correction);
     struct dig_air_pose *const pose           = &air->pose[segment->first_point];
     // Levers, masses and delay follow all of a correction but the pressures'.
@@ -158,7 +157,7 @@ static void rest_of(const struct dig_air *const air, const size_t s,
     }
     for (size_t p = 0; p < segment->points; p++) {
         struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
-        rest_at(&corrected, correction, &at, calm, &pose[p], rest_N[p], loss_N[p], more_N[p]);
+        rest_at(&corrected, correction, &at, calm, held, &pose[p], rest_N[p], taken_N[p]);
     }
 }
 
@@ -168,8 +167,8 @@ static double of_point_N(const struct dig_air *const air, const size_t s, const 
 {
     const double(*const rest_N)[DIG_JOINTS] = (const double(*)[DIG_JOINTS])(void *)air->scratch;
     const size_t points                     = air->segment[s].points;
-    return held ? smooth_at(rest_N + 2 * points, points, point, joint)
-                : rest_N[point][joint] - smooth_at(rest_N + points, points, point, joint);
+    const double taken_N                    = smooth_at(rest_N + points, points, point, joint);
+    return held ? taken_N : rest_N[point][joint] - taken_N;
 }
 
 // Of one point: pushes and loads.
@@ -222,7 +221,7 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
                                               : point[p].sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + c];
             }
         }
-        rest_of(air, s, &correction[s], true);
+        rest_of(air, s, &correction[s], true, false);
         for (size_t j = 0; j < DIG_JOINTS; j++) {
             const struct dig_cylinder *const cylinder = &air->machine.cylinder[j];
 
@@ -244,7 +243,7 @@ static void of_rows(const struct dig_air *const air, const struct dig_correction
 {
     for (size_t s = 0; s < air->segments; s++) {
         const struct dig_air_segment *const segment = &air->segment[s];
-        rest_of(air, s, &correction[s], calm);
+        rest_of(air, s, &correction[s], calm, held);
         for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
             const struct dig_air_row *const row   = &air->row[r];
             const size_t                    first = row->first - segment->first_point;

@@ -34,6 +34,15 @@ static enum dig_status take_push(const struct dig_machine *const    machine,
                              machine->pressure_step_Pa, push);
 }
 
+// Whether cylinders tell the moment. Where the bucket's pressures are read no sensor is what
+// senses.
+static bool has_bucket_drive(const bool valid[const DIG_SIGNALS])
+{
+    return valid[DIG_SIGNAL_BOOM_rad] && valid[DIG_SIGNAL_ARM_rad] &&
+           valid[DIG_SIGNAL_BUCKET_rad] && valid[DIG_SIGNAL_BUCKET_HEAD_Pa] &&
+           valid[DIG_SIGNAL_BUCKET_ROD_Pa];
+}
+
 enum dig_status dig_readings_take(const struct dig_machine *const    machine,
                                   const struct dig_correction *const correction,
                                   const struct dig_sample *const     sample,
@@ -42,8 +51,7 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
 {
     assert(machine != NULL && sample != NULL && readings != NULL);
     assert(correction == NULL || rates != NULL);
-    if (!dig_sample_has_moment(sample) ||
-        dig_signals_sensing(sample->valid) != DIG_SENSING_CYLINDERS) {
+    if (!has_bucket_drive(sample->valid)) {
         return DIG_ESTALE;
     }
     struct dig_readings r = {

@@ -128,6 +128,9 @@ static inline struct dig_vec2 com_m(const struct dig_rig_joints *const joints, c
 static inline double weight_N(const struct dig_rig_track *const t, const size_t i, const int j,
                               const int link, const double kg)
 {
+    if (!(fabs(kg) > 0.0)) {
+        return 0.0;
+    }
     const size_t          before = i > 0 ? i - 1 : i, after = i + 1 < t->rows ? i + 1 : i;
     const struct dig_vec2 was  = com_m(&t->row[before].joints, link);
     const struct dig_vec2 is   = com_m(&t->row[i].joints, link);
@@ -149,6 +152,9 @@ static inline double weight_N(const struct dig_rig_track *const t, const size_t 
 // small turn of the joint. The slew axis lies 0.1 m behind the boom pin.
 static inline double slew_N(const struct dig_rig_row *const row, const int j, const double radps)
 {
+    if (!(fabs(radps) > 0.0)) {
+        return 0.0;
+    }
     double                     lever_m;
     double                     work_J = 0.0;
     const struct dig_rig_front at     = dig_rig_front_at(&machine, &row->joints);
@@ -283,7 +289,8 @@ struct campaign {
     struct dig_machine_finding   finding;
 };
 
-static inline struct campaign *trace(const struct fault *const fault, const uint64_t seed)
+// Measured, but not traced: what it is compared with.
+static inline struct campaign *measure(const struct fault *const fault, const uint64_t seed)
 {
     struct campaign *const c     = calloc(1, sizeof *c);
     struct dig_error       error = { "" };
@@ -296,6 +303,12 @@ static inline struct campaign *trace(const struct fault *const fault, const uint
     assert_ok(
         dig_machine_side_create(&machine, set, DIGS, c->recording, c->measured, &c->side, &error),
         error);
+    return c;
+}
+
+static inline struct campaign *trace(const struct fault *const fault, const uint64_t seed)
+{
+    struct campaign *const c = measure(fault, seed);
     assert_int_equal(dig_machine_side_trace(c->side, 0.01, seed, &c->finding), DIG_OK);
     return c;
 }

@@ -113,7 +113,7 @@ TEST(each_effect_is_named_and_taken_off_the_digs)
         { { .angle_rad = { 0.0, 0.08, 0.0 } }, DIG_EFFECT_ANGLE_OFFSET, "arm_rad", 0.08 },
     };
     const struct fault     none  = { .dry_N = 0.0 };
-    struct campaign *const clean = trace(&none, 9);
+    struct campaign *const clean = measure(&none, 9);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct campaign *const c = trace(&cases[i].fault, 20 + i);
         expect_found(c, cases[i].effect, cases[i].parameter, cases[i].value);
@@ -137,7 +137,7 @@ TEST(a_machine_within_its_files_tolerance_is_no_effect)
         .heavier_kg = { 1.5 * machine.tolerance.mass_share * machine.link[0].mass_kg,
                         machine.tolerance.mass_share * machine.link[1].mass_kg, 0.0 }
     };
-    struct campaign *const clean = trace(&none, 9);
+    struct campaign *const clean = measure(&none, 9);
     struct campaign *const c     = trace(&heavy, 9);
     assert_false(c->finding.significant);
     assert_int_equal(c->finding.effects, 0);
@@ -170,7 +170,7 @@ TEST(friction_and_a_strong_offset_are_both_named)
 {
     const struct fault     none  = { .dry_N = 0.0 };
     const struct fault     both  = { .dry_N = 2000.0, .rod_Pa = 15e5 };
-    struct campaign *const clean = trace(&none, 9);
+    struct campaign *const clean = measure(&none, 9);
     struct campaign *const c     = trace(&both, 31);
     assert_int_equal(c->finding.effects, 2);
     assert_true(is_reported(&c->finding, DIG_EFFECT_CYLINDER_FRICTION));
@@ -204,7 +204,7 @@ TEST(a_payload_may_have_been_there_before_the_first_dig)
 {
     const struct fault     none  = { .dry_N = 0.0 };
     const struct fault     laden = { .payload_kg = 70.0, .was_there = true };
-    struct campaign *const clean = trace(&none, 16);
+    struct campaign *const clean = measure(&none, 16);
     struct campaign *const c     = trace(&laden, 16);
     double                 left, wrong;
     expect_found(c, DIG_EFFECT_PAYLOAD, NULL, 0.0);
@@ -221,7 +221,7 @@ TEST(each_dig_is_rid_of_the_payload_that_it_carried)
 {
     const struct fault     none  = { .dry_N = 0.0 };
     const struct fault     some  = { .payload_kg = 120.0, .falls_out = true };
-    struct campaign *const clean = trace(&none, 15);
+    struct campaign *const clean = measure(&none, 15);
     struct campaign *const c     = trace(&some, 15);
     double                 left[DIGS];
     double                 wrong[DIGS];
@@ -414,7 +414,7 @@ TEST(pressures_at_the_bucket_alone_tell_the_moment_and_its_seal)
 {
     const struct fault     whole = { .dry_N = 0.0 };
     const struct fault     bare  = { .bare = true };
-    struct campaign *const all   = trace(&whole, 51);
+    struct campaign *const all   = measure(&whole, 51);
     struct campaign *const c     = trace(&bare, 51);
     assert_false(c->finding.significant || c->finding.unexplained);
     for (int d = 0; d < DIGS; d++) {
