@@ -31,7 +31,7 @@ TEST(every_member_works_once_a_call)
     assert_int_equal(dig_crew_members(NULL), 1);
     assert_int_equal(dig_crew_create(5, &crew), DIG_OK);
     assert_int_equal(dig_crew_members(crew), 5);
-    for (size_t k = 1; k <= 3000; k++) {
+    for (size_t k = 1; k <= (test_is_quick() ? 300 : 3000); k++) {
         dig_crew_run(crew, count, NULL);
         for (size_t m = 0; m < 5; m++) {
             assert_int_equal(atomic_load(&worked[m]), k + (m == 0));
@@ -73,7 +73,7 @@ TEST(a_large_bed_moves_alike_on_any_number_of_threads)
     dem_run(&alone, 120);
     assert_true(alone.grains.slabs.count >= 2 && alone.list_rebuilds > 1);
     assert_int_equal(dig_world_sync_motion(&alone), DIG_OK);
-    for (size_t threads = 2; threads <= 5; threads += test_is_quick() ? 3 : 1) {
+    for (size_t threads = test_is_quick() ? 5 : 2; threads <= 5; threads++) {
         struct dig_world shared = make_bar();
         shared.single           = true;
         assert_int_equal(dig_crew_create(threads, &shared.crew), DIG_OK);
@@ -124,8 +124,8 @@ TEST(slabs_lose_no_contact)
     struct dig_world split = make_bar();
     struct dig_world whole = make_bar();
     split.single           = true;
-    dem_run(&split, 60);
-    dem_run(&whole, 60);
+    dem_run(&split, test_is_quick() ? 10 : 60);
+    dem_run(&whole, test_is_quick() ? 10 : 60);
     assert_true(split.grains.slabs.count >= 2 && whole.grains.slabs.count == 1);
     assert_int_equal(dig_world_sync_motion(&split), DIG_OK);
     static size_t place[MANY]; // in whole, by id: each sorts along cells of its own
