@@ -38,15 +38,17 @@ enum dig_status dig_derive_run(const struct dig_trajectory *const trajectory, co
     for (size_t i = 0; i < windows; i++) {
         t_s[i] = first_s + (double)i * step_s;
     }
+    double at_s[DIG_CURVE_POINTS];
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        at_s[k] = dig_trajectory_time_s(trajectory, tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
+    }
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
         for (size_t i = 0; i < windows; i++) {
             y[i] = (double)value[c * windows + i];
         }
         dig_curve_smooth(windows, t_s, y, half_s, smooth);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-            const double at_s     = dig_trajectory_time_s(trajectory, tooth_m, progress);
-            out[c][k]             = value_at(windows, first_s, step_s, smooth, at_s);
+            out[c][k] = value_at(windows, first_s, step_s, smooth, at_s[k]);
         }
     }
     free(block);
