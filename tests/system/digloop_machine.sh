@@ -5,7 +5,7 @@ table=${TABLE:-tables/reference_rig.sqlite}
 machine=$PWD/config/machines/zx200_trench.yaml
 digs=tests/data/reference/mu0.5_mur0.5_rho2500
 
-# Seven digs, two of them held out, by a bucket that weighs so much more; options go to digrig record.
+# Six digs, one of them or $held held out, by a bucket that weighs so much more; options go to digrig record.
 campaign() { # NAME KG OPTION…
     mkdir "$work/$1"
     heavier "$2" "$work/$1/true.yaml"
@@ -17,8 +17,7 @@ record() { # NAME OPTION…
     local folder=$work/$1 digs=${digs_of:-$digs} n=0 dig role
     printf 'scene: %s\nmachine: %s\nrecordings:\n' "$PWD/config/scenes/rig.yaml" "$machine" >"$folder/campaign.yaml"
     shift
-    for dig in __simpleA:identify __actual:fit _seed2__simpleA:fit _seed2__actual:fit _seed3__simpleA:fit \
-        _seed3__actual:holdout _seed4__actual:holdout; do
+    for dig in __simpleA:identify __actual:fit _seed2__simpleA:fit _seed2__actual:fit _seed3__simpleA:fit ${held:-_seed3__actual:holdout}; do
         role=${dig#*:} dig=${dig%:*} n=$((n + 1))
         "$BIN/digrig" record "$digs$dig.csv" --machine "$folder/true.yaml" --seed "$n" "$@" -o "$folder/$n.csv" 2>>"$folder/err"
         echo "  - {file: $n.csv, trajectory: ${dig##*__}, role: $role}" >>"$folder/campaign.yaml"
@@ -89,7 +88,7 @@ check "and is claimed, for the moment shows it" within "$(sed -nE 's/.*"probabil
 # A gain of the bucket's pressure sensor: in free air there is little pressure, and an offset does as well.
 mkdir "$work/gain"
 cp "$machine" "$work/gain/true.yaml"
-record gain
+held="_seed3__actual:holdout _seed4__actual:holdout" record gain # one tells a mean error badly
 for dig in "$work"/gain/*.csv; do
     awk -F, -v OFS=, '/^t_s/ { for (k = 1; k <= NF; k++) if ($k == "bucket_head_Pa") at = k; print; next } !/^#/ { $at *= 1.08 } { print }' "$dig" >"$dig.more"
     mv "$dig.more" "$dig"
