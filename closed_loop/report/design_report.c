@@ -88,9 +88,9 @@ void dig_design_text(const struct dig_design *const design, const struct dig_cur
 
 static void put_axes(FILE *const to, const char *const key, const double value[DIG_AXES])
 {
-    (void)fprintf(to, ",\n   \"%s\": {", key);
+    dig_json_put(to, ",\n   %s: {", key);
     for (int a = 0; a < DIG_AXES; a++) {
-        dig_json_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a), value[a]);
+        dig_json_put(to, a == 0 ? "%s: %g" : ", %s: %g", dig_axis_name((enum dig_axis)a), value[a]);
     }
     (void)fputs("}", to);
 }
@@ -99,32 +99,31 @@ static void put_dig(FILE *const to, const struct dig_design *const design,
                     const struct dig_curve_set *const set, const size_t t)
 {
     const struct dig_design_dig *const dig = &design->dig[t];
-    (void)fprintf(to, "\n  {\"trajectory\": \"%s\", \"simple\": %s", set->trajectory[t].name,
-                  dig->simple ? "true" : "false");
-    dig_json_member(to, ", ", "duration_s", dig->duration_s);
-    dig_json_member(to, ", ", "path_m", dig->path_m);
-    dig_json_member(to, ",\n   ", "bits", dig->bits);
-    dig_json_member(to, ", ", "bits_with_forces", dig->bits_wrench);
-    (void)fprintf(to, ", \"partner\": \"%s\"", set->trajectory[dig->partner].name);
-    dig_json_member(to, ", ", "bits_with_partner", dig->bits_partner);
+    dig_json_put(to,
+                 "\n  {\"trajectory\": %s, \"simple\": %i, \"duration_s\": %g, \"path_m\": %g,\n"
+                 "   \"bits\": %g, \"bits_with_forces\": %g, \"partner\": %s, "
+                 "\"bits_with_partner\": %g",
+                 set->trajectory[t].name, dig->simple, dig->duration_s, dig->path_m, dig->bits,
+                 dig->bits_wrench, set->trajectory[dig->partner].name, dig->bits_partner);
     put_axes(to, "sd_left", dig->sd);
     put_axes(to, "simulated_left", dig->error_axis);
-    dig_json_member(to, ", ", "simulated_left_all", dig->error);
-    dig_json_member(to, ", ", "simulated_target_error", dig->target_error);
-    (void)fputs(",\n   \"effects\": {", to);
+    dig_json_put(to,
+                 ", \"simulated_left_all\": %g, \"simulated_target_error\": %g,\n"
+                 "   \"effects\": {",
+                 dig->error, dig->target_error);
     bool first = true;
     for (int e = 0; e < DIG_EFFECTS; e++) {
         if (dig->tells[e]) {
-            dig_json_member(to, first ? "" : ", ", dig_effect_name((enum dig_effect_id)e),
-                            dig->sigmas[e]);
+            dig_json_put(to, first ? "%s: %g" : ", %s: %g", dig_effect_name((enum dig_effect_id)e),
+                         dig->sigmas[e]);
             first = false;
         }
     }
-    (void)fprintf(to, "}, \"pairs\": %zu, \"pairs_apart\": %zu", dig->pairs, dig->apart);
+    dig_json_put(to, "}, \"pairs\": %zu, \"pairs_apart\": %zu", dig->pairs, dig->apart);
     if (dig->pairs > 0) {
-        (void)fprintf(to, ", \"hardest\": [\"%s\", \"%s\"]", dig_effect_name(dig->close[0]),
-                      dig_effect_name(dig->close[1]));
-        dig_json_member(to, ", ", "hardest_sigmas", dig->close_sigmas);
+        dig_json_put(to, ", \"hardest\": [%s, %s], \"hardest_sigmas\": %g",
+                     dig_effect_name(dig->close[0]), dig_effect_name(dig->close[1]),
+                     dig->close_sigmas);
     }
     (void)fputs("}", to);
 }
@@ -133,18 +132,15 @@ void dig_design_json(const struct dig_design *const design, const struct dig_cur
                      FILE *const to)
 {
     assert(design != NULL && set != NULL && to != NULL && design->ranked > 0);
-    (void)fprintf(
-        to,
-        "{\"recommended\": \"%s\", \"reference\": \"%s\", \"target\": \"%s\", \"draws\": %zu,\n",
-        set->trajectory[design->rank[0]].name, set->trajectory[design->reference].name,
-        set->trajectory[design->target].name, design->draws);
-    dig_json_member(to, " \"gain\": {", "value", design->gain);
-    dig_json_member(to, ", ", "low", design->gain_low);
-    dig_json_member(to, ", ", "high", design->gain_high);
-    (void)fprintf(to, "}, \"confirmed\": %s,\n \"ranking\": [",
-                  design->confirmed ? "true" : "false");
+    dig_json_put(to,
+                 "{\"recommended\": %s, \"reference\": %s, \"target\": %s, \"draws\": %zu,\n"
+                 " \"gain\": {\"value\": %g, \"low\": %g, \"high\": %g}, \"confirmed\": %i,\n"
+                 " \"ranking\": [",
+                 set->trajectory[design->rank[0]].name, set->trajectory[design->reference].name,
+                 set->trajectory[design->target].name, design->draws, design->gain,
+                 design->gain_low, design->gain_high, design->confirmed);
     for (size_t i = 0; i < design->ranked; i++) {
-        (void)fprintf(to, "%s\"%s\"", i == 0 ? "" : ", ", set->trajectory[design->rank[i]].name);
+        dig_json_put(to, i == 0 ? "%s" : ", %s", set->trajectory[design->rank[i]].name);
     }
     (void)fputs("],\n \"digs\": [", to);
     bool first = true;

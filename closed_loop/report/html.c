@@ -1,9 +1,9 @@
 #include "closed_loop/report/html.h"
 
+#include "closed_loop/report/markup.h"
 #include "core/text.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,12 +30,13 @@ void dig_html_text(FILE *const to, const char *const text)
     }
 }
 
-void dig_html_between(FILE *const to, const char *const before, const char *const text,
-                      const char *const after)
+void dig_html_put(FILE *const to, const char *const format, ...)
 {
-    (void)fputs(before, to);
-    dig_html_text(to, text);
-    (void)fputs(after, to);
+    static const struct dig_markup html = { dig_html_text, "–" };
+    va_list                        values;
+    va_start(values, format);
+    dig_markup_put(to, &html, format, values);
+    va_end(values);
 }
 
 void dig_html_without_folders(FILE *const to, const char *const text)
@@ -58,16 +59,6 @@ void dig_html_without_folders(FILE *const to, const char *const text)
         dig_html_text(to, kept);
     }
     free(kept);
-}
-
-void dig_html_cell(FILE *const to, const int digits, const double value)
-{
-    assert(to != NULL);
-    if (isfinite(value)) {
-        (void)fprintf(to, "<td>%.*f</td>", digits, value);
-    } else {
-        (void)fputs("<td>–</td>", to);
-    }
 }
 
 // On paper nothing scrolls, no picture or line of a table is torn, and bars are printed.
@@ -96,13 +87,13 @@ static const char style[] =
 void dig_html_begin(FILE *const to, const char *const title)
 {
     assert(to != NULL && title != NULL);
-    dig_html_between(
-        to,
-        "<!doctype html>\n<html lang=en><head><meta charset=utf-8>\n"
-        "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n<title>",
-        title, "</title>\n");
+    dig_html_put(to,
+                 "<!doctype html>\n<html lang=en><head><meta charset=utf-8>\n"
+                 "<meta name=viewport content=\"width=device-width, initial-scale=1\">\n"
+                 "<title>%s</title>\n",
+                 title);
     (void)fputs(style, to);
-    dig_html_between(to, "</head><body>\n<h1>", title, "</h1>\n");
+    dig_html_put(to, "</head><body>\n<h1>%s</h1>\n", title);
 }
 
 void dig_html_end(FILE *const to, const char *const note)

@@ -9,15 +9,13 @@
 /// character or a byte that is not UTF-8 becomes U+FFFD. Every text on a page goes through here.
 void dig_html_text(FILE *to, const char *text);
 
-/// The same between two pieces of HTML, as "<p>" and "</p>\n".
-void dig_html_between(FILE *to, const char *before, const char *text, const char *after);
+/// A piece of a page by its format: %s goes through dig_html_text(), a number that is not finite is
+/// a dash. What else there is: closed_loop/report/markup.h.
+__attribute__((format(printf, 2, 3))) void dig_html_put(FILE *to, const char *format, ...);
 
 /// As dig_html_text(), without the folders of files that are named in it: they are somebody's
 /// machine.
 void dig_html_without_folders(FILE *to, const char *text);
-
-/// A table's cell: the number, or a dash for none.
-void dig_html_cell(FILE *to, int digits, double value);
 
 /// From the doctype to the <h1>, both with this title; a sentence in <p class=result> comes next.
 /// The style makes phones, desktops and paper happy; it styles table (.words: to the left, .wide:

@@ -1,28 +1,13 @@
 #include "closed_loop/report/json.h"
 
+#include "closed_loop/report/markup.h"
 #include "core/text.h"
 
-#include <math.h>
-
-void dig_json_number(FILE *const to, const double value)
+void dig_json_put(FILE *const to, const char *const format, ...)
 {
-    if (isfinite(value)) {
-        (void)fprintf(to, "%.6g", value);
-    } else {
-        (void)fputs("null", to);
-    }
-}
-
-void dig_json_member(FILE *const to, const char *const before, const char *const name,
-                     const double value)
-{
-    (void)fprintf(to, "%s\"%s\": ", before, name);
-    dig_json_number(to, value);
-}
-
-void dig_json_text(FILE *const to, const char *const before, const char *const name,
-                   const char *const text)
-{
-    (void)fprintf(to, "%s\"%s\": ", before, name);
-    dig_text_put_json(to, text);
+    static const struct dig_markup json = { dig_text_put_json, "null" };
+    va_list                        values;
+    va_start(values, format);
+    dig_markup_put(to, &json, format, values);
+    va_end(values);
 }

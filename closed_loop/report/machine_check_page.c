@@ -17,17 +17,16 @@ static void put_row(FILE *const to, const struct dig_check_subject *const subjec
     struct dig_check_words words;
     const bool             loud = item->verdict >= DIG_CHECK_DOUBTFUL;
     dig_check_say(subject, item, &words);
-    (void)fprintf(to, "<tr><td>%s%s%s</td><td>", loud ? "<b>" : "",
-                  dig_check_verdict_name(item->verdict), loud ? "</b>" : "");
-    dig_html_between(to, "", words.question, "</td><td>");
-    dig_html_text(to, words.answer);
+    dig_html_put(to, loud ? "<tr><td><b>%s</b></td>" : "<tr><td>%s</td>",
+                 dig_check_verdict_name(item->verdict));
+    dig_html_put(to, "<td>%s</td><td>%s", words.question, words.answer);
     if (words.todo[0] != '\0') {
-        dig_html_between(to, "<br>→ ", words.todo, "");
+        dig_html_put(to, "<br>→ %s", words.todo);
     }
     if (item->or_item >= 0) {
         struct dig_check_words other;
         dig_check_say(subject, &subject->check->item[item->or_item], &other);
-        dig_html_between(to, "<br>or ", other.question, ": this recording cannot tell");
+        dig_html_put(to, "<br>or %s: this recording cannot tell", other.question);
     }
     (void)fputs("</td></tr>\n", to);
 }
@@ -128,7 +127,7 @@ enum dig_status dig_machine_check_html(const struct dig_check_subject *const sub
     (void)snprintf(title, sizeof title, "%s in free air", subject->machine->name);
     dig_check_sentence(subject, sizeof sentence, sentence);
     dig_html_begin(to, title);
-    dig_html_between(to, "<p class=result>", sentence, "</p>\n<p>File ");
+    dig_html_put(to, "<p class=result>%s</p>\n<p>File ", sentence);
     dig_html_without_folders(to, subject->file);
     (void)fputs(", recording ", to);
     dig_html_without_folders(to, subject->recording);

@@ -67,39 +67,36 @@ static void put_item(FILE *const to, const struct dig_check_subject *const subje
 {
     struct dig_check_words words;
     dig_check_say(subject, item, &words);
-    (void)fprintf(to, "  {\"question\": \"%s\", \"of\": \"%s\", \"verdict\": \"%s\"",
-                  dig_check_question_name(item->question), dig_check_of_name(item),
-                  dig_check_verdict_name(item->verdict));
-    dig_json_member(to, ", ", "value", item->value);
-    dig_json_member(to, ", ", "sigma", item->sigma);
-    dig_json_member(to, ", ", "tolerance", item->tolerance);
-    dig_json_member(to, ", ", "excess", item->excess);
+    dig_json_put(to,
+                 "  {\"question\": %s, \"of\": %s, \"verdict\": %s, \"value\": %g, \"sigma\": %g, "
+                 "\"tolerance\": %g, \"excess\": %g",
+                 dig_check_question_name(item->question), dig_check_of_name(item),
+                 dig_check_verdict_name(item->verdict), item->value, item->sigma, item->tolerance,
+                 item->excess);
     if (item->question == DIG_CHECK_CYLINDER) {
-        (void)fprintf(to, ", \"found_in\": \"%s\"", dig_joint_name((enum dig_joint)item->answer));
+        dig_json_put(to, ", \"found_in\": %s", dig_joint_name((enum dig_joint)item->answer));
     }
     if (item->question == DIG_CHECK_REST) {
-        dig_json_member(to, ", ", "share", item->share);
+        dig_json_put(to, ", \"share\": %g", item->share);
     }
     if (item->or_item >= 0) {
         const struct dig_check_item *const other = &subject->check->item[item->or_item];
-        (void)fprintf(to, ", \"or\": {\"question\": \"%s\", \"of\": \"%s\"}",
-                      dig_check_question_name(other->question), dig_check_of_name(other));
+        dig_json_put(to, ", \"or\": {\"question\": %s, \"of\": %s}",
+                     dig_check_question_name(other->question), dig_check_of_name(other));
     }
-    dig_json_text(to, ", ", "text", words.question);
-    dig_json_text(to, ", ", "answer", words.answer);
-    dig_json_text(to, ", ", "todo", words.todo);
-    (void)fputc('}', to);
+    dig_json_put(to, ", \"text\": %s, \"answer\": %s, \"todo\": %s}", words.question, words.answer,
+                 words.todo);
 }
 
 void dig_machine_check_json(const struct dig_check_subject *const subject, FILE *const to)
 {
     assert(subject != NULL && to != NULL);
     const struct dig_machine_air_check *const check = subject->check;
-    dig_json_text(to, "{", "machine", subject->machine->name);
-    dig_json_text(to, ",\n ", "recording", subject->recording);
-    dig_json_member(to, ",\n ", "duration_s", check->duration_s);
-    (void)fprintf(to, ",\n \"verdict\": \"%s\",\n \"unexplained\": %s,\n \"items\": [\n",
-                  dig_check_verdict_name(check->verdict), check->unexplained ? "true" : "false");
+    dig_json_put(to,
+                 "{\"machine\": %s,\n \"recording\": %s,\n \"duration_s\": %g,\n"
+                 " \"verdict\": %s,\n \"unexplained\": %i,\n \"items\": [\n",
+                 subject->machine->name, subject->recording, check->duration_s,
+                 dig_check_verdict_name(check->verdict), check->unexplained);
     for (size_t i = 0; i < check->items; i++) {
         put_item(to, subject, &check->item[i]);
         (void)fputs(i + 1 < check->items ? ",\n" : "\n", to);

@@ -54,43 +54,37 @@ void dig_report_text(const struct dig_report *const report, FILE *const to)
 }
 
 static void put_json_gravel(FILE *const to, const char *const name,
-                            const struct dig_gravel *const gravel, const bool known)
+                            const struct dig_gravel *const gravel)
 {
-    (void)fprintf(to, ",\"%s\":", name);
-    if (!known) {
-        (void)fprintf(to, "null");
-        return;
-    }
+    dig_json_put(to, ",%s:", name);
     for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "%s\"%s\":%.6g", a == 0 ? "{" : ",", dig_axis_name((enum dig_axis)a),
-                      gravel->value[a]);
+        dig_json_put(to, a == 0 ? "{%s:%g" : ",%s:%g", dig_axis_name((enum dig_axis)a),
+                     gravel->value[a]);
     }
-    (void)fprintf(to, "}");
+    (void)fputc('}', to);
 }
 
 void dig_report_json(const struct dig_report *const report, FILE *const to)
 {
     assert(report != NULL && to != NULL);
-    (void)fprintf(to,
-                  "{\"metric\":\"relative Euclidean norm of the moment, moving average "
-                  "±0.16 s\",\"lambda\":%.6g,\"runs\":[",
-                  report->lambda);
+    dig_json_put(to,
+                 "{\"metric\":\"relative Euclidean norm of the moment, moving average ±0.16 s\","
+                 "\"lambda\":%g,\"runs\":[",
+                 report->lambda);
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        (void)fprintf(to, "%s{\"name\":", r == 0 ? "" : ",");
-        dig_text_put_json(to, run->name);
-        put_json_gravel(to, "truth", &run->truth, run->truth_known);
-        put_json_gravel(to, "identified", &run->gravel, true);
-        put_json_gravel(to, "low", &run->low, true);
-        put_json_gravel(to, "high", &run->high, true);
-        put_json_gravel(to, "nearest", &run->nearest, true);
-        (void)fputs(",\"distance\":", to);
-        dig_json_number(to, run->distance);
-        (void)fprintf(to, ",\"predicted\":\"%s\",\"error\":", run->real.trajectory);
-        dig_json_number(to, run->error);
-        (void)fputs(",\"noise_floor\":", to);
-        dig_json_number(to, run->noise_floor);
-        (void)fputc('}', to);
+        dig_json_put(to, r == 0 ? "{\"name\":%s" : ",{\"name\":%s", run->name);
+        if (run->truth_known) {
+            put_json_gravel(to, "truth", &run->truth);
+        } else {
+            (void)fputs(",\"truth\":null", to);
+        }
+        put_json_gravel(to, "identified", &run->gravel);
+        put_json_gravel(to, "low", &run->low);
+        put_json_gravel(to, "high", &run->high);
+        put_json_gravel(to, "nearest", &run->nearest);
+        dig_json_put(to, ",\"distance\":%g,\"predicted\":%s,\"error\":%g,\"noise_floor\":%g}",
+                     run->distance, run->real.trajectory, run->error, run->noise_floor);
     }
     (void)fprintf(to, "]}\n");
 }
@@ -108,14 +102,14 @@ static void put_table(FILE *const to, const struct dig_report_run *const run)
         } else {
             (void)fputs("<td>unknown</td>", to);
         }
-        (void)fprintf(to, "<td><b>%.*f</b></td><td>%.*f to %.*f</td><td>%.*f</td></tr>\n", d,
-                      run->gravel.value[a], d, run->low.value[a], d, run->high.value[a], d,
-                      run->nearest.value[a]);
+        dig_html_put(to, "<td><b>%.*f</b></td><td>%.*f to %.*f</td><td>%.*f</td></tr>\n", d,
+                     run->gravel.value[a], d, run->low.value[a], d, run->high.value[a], d,
+                     run->nearest.value[a]);
     }
-    (void)fprintf(to,
-                  "</table>\n<p>Error of the predicted <i>%s</i> dig: <b>%.3f</b>; "
-                  "noise floor (1 σ of what it would be if the model were complete): %.3f.</p>\n",
-                  run->real.trajectory, run->error, run->noise_floor);
+    dig_html_put(to,
+                 "</table>\n<p>Error of the predicted <i>%s</i> dig: <b>%.3f</b>; "
+                 "noise floor (1 σ of what it would be if the model were complete): %.3f.</p>\n",
+                 run->real.trajectory, run->error, run->noise_floor);
 }
 
 // Measured against the model along one dig; what lies outside the measured range is a gap.
@@ -165,9 +159,8 @@ static void put_sentence(FILE *const to, const struct dig_report *const report)
     (void)fputs("<p class=result>What was predicted from one simple dig was off by ", to);
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        (void)fprintf(to, "%s%.0f %% (noise floor %.0f %%) in the run ", r == 0 ? "" : ", by ",
-                      100.0 * run->error, 100.0 * run->noise_floor);
-        dig_html_text(to, run->name);
+        dig_html_put(to, "%s%.0f %% (noise floor %.0f %%) in the run %s", r == 0 ? "" : ", by ",
+                     100.0 * run->error, 100.0 * run->noise_floor, run->name);
     }
     (void)fputs(".</p>\n", to);
 }
@@ -186,8 +179,7 @@ enum dig_status dig_report_html(const struct dig_report *const report, FILE *con
                   report->lambda, pow(report->lambda, 4.0));
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        dig_html_between(to, "<h2>", run->name, "</h2>\n");
-        dig_html_between(to, "<p>", run->dig, "</p>\n");
+        dig_html_put(to, "<h2>%s</h2>\n<p>%s</p>\n", run->name, run->dig);
         put_table(to, run);
         (void)fputs("<div class=grid>\n", to);
         enum dig_status status =

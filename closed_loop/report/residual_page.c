@@ -22,15 +22,14 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
             dig_html_without_folders(to, dig->name);
             (void)fprintf(to, "<br><span class=muted>%s</span>", dig_residuals_use_name(dig->use));
         }
-        (void)fprintf(to, "</th><td>%s</td>", of_channel[c]);
-        dig_html_cell(to, 1, c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN);
-        dig_html_cell(to, 1, soil->sigmas);
-        dig_html_cell(to, 1, lifted->sigmas);
-        dig_html_cell(to, 3, hypot(fmax(soil->relative, 0.0), fmax(lifted->relative, 0.0)));
-        dig_html_cell(to, 3,
-                      hypot(fmax(dig->after[DIG_PART_SOIL][c].relative, 0.0),
-                            fmax(dig->after[DIG_PART_LIFTED][c].relative, 0.0)));
-        (void)fputs("</tr>\n", to);
+        dig_html_put(to,
+                     "</th><td>%s</td><td>%.1f</td><td>%.1f</td><td>%.1f</td><td>%.3f</td>"
+                     "<td>%.3f</td></tr>\n",
+                     of_channel[c], c == DIG_CHANNEL_MY_Nm ? dig->air_sigmas : (double)NAN,
+                     soil->sigmas, lifted->sigmas,
+                     hypot(fmax(soil->relative, 0.0), fmax(lifted->relative, 0.0)),
+                     hypot(fmax(dig->after[DIG_PART_SOIL][c].relative, 0.0),
+                           fmax(dig->after[DIG_PART_LIFTED][c].relative, 0.0)));
     }
 }
 
@@ -100,8 +99,8 @@ static void put_slopes(FILE *const to, const struct dig_residuals *const residua
         (void)fprintf(to, "<tr><th>%s</th>", name[s]);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             if (residuals->known[c]) {
-                dig_html_cell(to, 2, residuals->trend[c][s].correlation);
-                dig_html_cell(to, 3, residuals->trend[c][s].p);
+                dig_html_put(to, "<td>%.2f</td><td>%.3f</td>", residuals->trend[c][s].correlation,
+                             residuals->trend[c][s].p);
             }
         }
         (void)fputs("</tr>\n", to);

@@ -31,32 +31,27 @@ static bool is_known(const struct dig_residuals_dig *const dig, const size_t cha
 static void put_residual(FILE *const to, const char *const name,
                          const struct dig_residual *const residual)
 {
-    (void)fprintf(to, "\"%s\": ", name);
-    dig_json_member(to, "{", "rms", residual->rms);
-    dig_json_member(to, ", ", "relative", residual->relative);
-    dig_json_member(to, ", ", "sigmas", residual->sigmas);
-    (void)fputs("}", to);
+    dig_json_put(to, "%s: {\"rms\": %g, \"relative\": %g, \"sigmas\": %g}", name, residual->rms,
+                 residual->relative, residual->sigmas);
 }
 
 static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
 {
-    dig_json_text(to, "{", "file", dig->name);
-    dig_json_text(to, ", ", "trajectory", dig->trajectory);
-    (void)fprintf(to, ", \"role\": \"%s\", \"pass\": %u", dig_residuals_use_name(dig->use),
-                  dig->pass);
-    dig_json_member(to, ", ", "depth", dig->taken_off.depth);
-    dig_json_member(to, ", ", "attack_deg", dig->taken_off.attack_rad / DIG_RAD_PER_DEG);
-    dig_json_member(to, ", \"air\": {", "sigmas", dig->air_sigmas);
-    (void)fputs("}", to);
+    dig_json_put(to,
+                 "{\"file\": %s, \"trajectory\": %s, \"role\": %s, \"pass\": %u, \"depth\": %g, "
+                 "\"attack_deg\": %g, \"air\": {\"sigmas\": %g}",
+                 dig->name, dig->trajectory, dig_residuals_use_name(dig->use), dig->pass,
+                 dig->taken_off.depth, dig->taken_off.attack_rad / DIG_RAD_PER_DEG,
+                 dig->air_sigmas);
     for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {
-        (void)fprintf(to, ",\n   \"%s\": {", dig_part_name((enum dig_part)p));
+        dig_json_put(to, ",\n   %s: {", dig_part_name((enum dig_part)p));
         bool any = false;
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             if (!is_known(dig, c)) {
                 continue;
             }
-            (void)fprintf(to, "%s\"%s\": {", any ? ", " : "",
-                          dig_residual_channel_name((enum dig_channel)c));
+            dig_json_put(to, any ? ", %s: {" : "%s: {",
+                         dig_residual_channel_name((enum dig_channel)c));
             put_residual(to, "before", &dig->before[p][c]);
             (void)fputs(", ", to);
             put_residual(to, "after", &dig->after[p][c]);
@@ -71,32 +66,28 @@ static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
 static void put_trend(FILE *const to, const char *const channel, const enum dig_regressors state,
                       const struct dig_trend *const trend)
 {
-    (void)fprintf(to, "{\"of\": \"%s\", \"against\": \"%s\"", channel, dig_regressors_name(state));
-    dig_json_member(to, ", ", "slope", trend->slope);
-    dig_json_member(to, ", ", "low", trend->low);
-    dig_json_member(to, ", ", "high", trend->high);
-    dig_json_member(to, ", ", "correlation", trend->correlation);
-    dig_json_member(to, ", ", "p", trend->p);
-    (void)fputs(", \"bins\": [", to);
+    dig_json_put(to,
+                 "{\"of\": %s, \"against\": %s, \"slope\": %g, \"low\": %g, \"high\": %g, "
+                 "\"correlation\": %g, \"p\": %g, \"bins\": [",
+                 channel, dig_regressors_name(state), trend->slope, trend->low, trend->high,
+                 trend->correlation, trend->p);
     for (size_t b = 0; b < trend->bins; b++) {
-        dig_json_member(to, b == 0 ? "{" : ", {", "at", trend->bin[b].at);
-        dig_json_member(to, ", ", "mean", trend->bin[b].mean);
-        dig_json_member(to, ", ", "standard_error", trend->bin[b].standard_error);
-        (void)fprintf(to, ", \"digs\": %zu}", trend->bin[b].digs);
+        (void)fputs(b == 0 ? "" : ", ", to);
+        dig_json_put(to, "{\"at\": %g, \"mean\": %g, \"standard_error\": %g, \"digs\": %zu}",
+                     trend->bin[b].at, trend->bin[b].mean, trend->bin[b].standard_error,
+                     trend->bin[b].digs);
     }
     (void)fputs("]}", to);
 }
 
-static void put_white(FILE *const to, const char *const before, const char *const name,
+static void put_white(FILE *const to, const char *const name,
                       const struct dig_whiteness *const white)
 {
-    (void)fprintf(to, "%s\"%s\": ", before, name);
-    dig_json_member(to, "{", "statistic", white->statistic);
-    dig_json_member(to, ", ", "low", white->low);
-    dig_json_member(to, ", ", "high", white->high);
-    dig_json_member(to, ", ", "expected", white->expected);
-    dig_json_member(to, ", ", "p", white->p);
-    (void)fprintf(to, ", \"digs\": %zu}", white->digs);
+    dig_json_put(to,
+                 "%s: {\"statistic\": %g, \"low\": %g, \"high\": %g, \"expected\": %g, \"p\": %g, "
+                 "\"digs\": %zu}",
+                 name, white->statistic, white->low, white->high, white->expected, white->p,
+                 white->digs);
 }
 
 void dig_residuals_json(const struct dig_residuals *const residuals, FILE *const to)
@@ -122,7 +113,9 @@ void dig_residuals_json(const struct dig_residuals *const residuals, FILE *const
         (void)fputs("null,\n", to);
         return;
     }
-    put_white(to, "{", "without", &residuals->without);
-    put_white(to, ", ", "with", &residuals->with);
+    (void)fputs("{", to);
+    put_white(to, "without", &residuals->without);
+    (void)fputs(", ", to);
+    put_white(to, "with", &residuals->with);
     (void)fputs("},\n", to);
 }

@@ -67,10 +67,10 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
         const struct dig_model_effect *const effect = &trace->effect[e];
         for (size_t p = 0; p < effect->parameters; p++) {
             const struct dig_model_parameter *const q = &effect->parameter[p];
-            (void)fprintf(to, "<tr><th>%s: ", dig_effect_name(effect->effect));
-            dig_html_text(to, q->name);
-            (void)fprintf(to, "</th><td><b>%.4g</b></td><td>%.4g to %.4g</td><td></td></tr>\n",
-                          q->value, q->low, q->high);
+            dig_html_put(to,
+                         "<tr><th>%s: %s</th><td><b>%.4g</b></td><td>%.4g to %.4g</td><td></td>"
+                         "</tr>\n",
+                         dig_effect_name(effect->effect), q->name, q->value, q->low, q->high);
         }
     }
     for (int a = 0; a < DIG_AXES; a++) {
@@ -87,7 +87,7 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
         char text[256];
         dig_trace_meaning(trace, e, sizeof text, text);
         if (text[0] != '\0') {
-            dig_html_between(to, "<p>", text, ".</p>\n");
+            dig_html_put(to, "<p>%s.</p>\n", text);
         }
     }
 }
@@ -117,8 +117,7 @@ static void put_residuals(FILE *const to, const struct dig_trace *const trace)
     (void)fputs(
         "<h2>Where the residual shows</h2>\n<table><tr><th></th><th>rms</th><th></th></tr>\n", to);
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
-        (void)fprintf(to, "<tr><th>%s</th>", title[p]);
-        dig_html_cell(to, 2, trace->residual[p]);
+        dig_html_put(to, "<tr><th>%s</th><td>%.2f</td>", title[p], trace->residual[p]);
         put_bar(to, isfinite(trace->residual[p]) ? 150.0 * trace->residual[p] / most : 0.0);
     }
     (void)fprintf(
@@ -140,15 +139,13 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
                 to);
     for (size_t i = 0; i < trace->candidates && i < CANDIDATES_SHOWN; i++) {
         const struct dig_candidate *const c = &trace->candidate[i];
-        (void)fprintf(to, "<tr><th>%s</th>", dig_effect_name(c->effect));
-        dig_html_cell(to, 1, c->log_evidence);
-        dig_html_cell(to, 3, c->p_fit);
-        dig_html_cell(to, 2, c->inclusion);
-        dig_html_cell(to, 3, c->error);
-        (void)fputs("<td style=\"text-align:left;min-width:15em\">", to);
+        dig_html_put(to,
+                     "<tr><th>%s</th><td>%.1f</td><td>%.3f</td><td>%.2f</td><td>%.3f</td>"
+                     "<td style=\"text-align:left;min-width:15em\">",
+                     dig_effect_name(c->effect), c->log_evidence, c->p_fit, c->inclusion, c->error);
         for (size_t p = 0; p < c->parameters; p++) {
-            dig_html_between(to, p == 0 ? "" : ", ", c->parameter[p].name, "");
-            (void)fprintf(to, " %.3g", c->parameter[p].value);
+            dig_html_put(to, p == 0 ? "%s %.3g" : ", %s %.3g", c->parameter[p].name,
+                         c->parameter[p].value);
         }
         (void)fputs("</td></tr>\n", to);
     }
@@ -283,12 +280,12 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
     for (size_t i = 0; i < trace->tells; i++) {
         const struct dig_tell_apart *const tell = &trace->tell[i];
         const bool                         told = tell->how[0] != '\0';
-        (void)fprintf(to, "<tr><th>%s<br>%s</th><td style=\"text-align:left;min-width:7em\">",
-                      dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
-        dig_html_between(to, "", told ? tell->how : "nothing that was tried", "</td>");
-        dig_html_cell(to, 2, told ? tell->sigmas : (double)NAN);
-        dig_html_cell(to, 0, told ? tell->repeats : (double)NAN);
-        (void)fputs("</tr>\n", to);
+        dig_html_put(to,
+                     "<tr><th>%s<br>%s</th><td style=\"text-align:left;min-width:7em\">%s</td>"
+                     "<td>%.2f</td><td>%.0f</td></tr>\n",
+                     dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]),
+                     told ? tell->how : "nothing that was tried", told ? tell->sigmas : (double)NAN,
+                     told ? tell->repeats : (double)NAN);
     }
     (void)fputs("</table>\n<p class=muted>What these digs cannot tell apart, as fitted: where they "
                 "differ most, in sigmas of the sensors for a motion in free air, in scatters of "
@@ -303,7 +300,7 @@ static void put_next(FILE *const to, const struct dig_trace *const trace)
     }
     (void)fputs("<h2>What to do next</h2>\n", to);
     if (trace->advice[0] != '\0') {
-        dig_html_between(to, "<p>", trace->advice, "</p>\n");
+        dig_html_put(to, "<p>%s</p>\n", trace->advice);
     }
     put_tells(to, trace);
     if (trace->command[0] != '\0') {
@@ -334,8 +331,7 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     (void)snprintf(title, sizeof title, "What the model lacks: %.*s", (int)(ends - begins),
                    campaign + begins);
     dig_html_begin(to, title);
-    dig_html_between(to, "<p class=result>", sentence, "</p>\n");
-    (void)fprintf(to, "<p>%zu digs against ", trace->digs);
+    dig_html_put(to, "<p class=result>%s</p>\n<p>%zu digs against ", sentence, trace->digs);
     dig_html_without_folders(to, subject->table);
     if (subject->lambda > 0.0) {
         (void)fprintf(to,
@@ -345,7 +341,7 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     (void)fputs(".</p>\n", to);
     dig_trace_not_applied(trace, sizeof sentence, sentence);
     if (sentence[0] != '\0') {
-        dig_html_between(to, "<p>", sentence, ".</p>\n");
+        dig_html_put(to, "<p>%s.</p>\n", sentence);
     }
     put_sets(to, trace);
     put_errors(to, trace);

@@ -10,26 +10,29 @@
 #include <math.h>
 #include <string.h>
 
+static void put_interval(FILE *const to, const char *const before, const char *const name,
+                         const double value, const double low, const double high)
+{
+    (void)fputs(before, to);
+    dig_json_put(to, "%s: {\"value\": %g, \"low\": %g, \"high\": %g}", name, value, low, high);
+}
+
 static void put_parameters(FILE *const to, const size_t n,
                            const struct dig_model_parameter parameter[])
 {
-    (void)fputs("\"parameters\": {", to);
+    (void)fputs(", \"parameters\": {", to);
     for (size_t p = 0; p < n; p++) {
-        (void)fputs(p == 0 ? "" : ", ", to);
-        dig_text_put_json(to, parameter[p].name);
-        dig_json_member(to, ": {", "value", parameter[p].value);
-        dig_json_member(to, ", ", "low", parameter[p].low);
-        dig_json_member(to, ", ", "high", parameter[p].high);
-        (void)fputs("}", to);
+        const struct dig_model_parameter *const q = &parameter[p];
+        put_interval(to, p == 0 ? "" : ", ", q->name, q->value, q->low, q->high);
     }
-    (void)fputs("}", to);
+    (void)fputs("}}", to);
 }
 
 static void put_verdict(FILE *const to, const struct dig_trace *const trace)
 {
     (void)fputs("\"verdict\": [", to);
     for (size_t e = 0; e < trace->effects; e++) {
-        (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ", dig_effect_name(trace->effect[e].effect));
+        dig_json_put(to, e == 0 ? "%s" : ", %s", dig_effect_name(trace->effect[e].effect));
     }
     (void)fputs(trace->effects == 0 ? "\"none\"],\n" : "],\n", to);
 }
@@ -40,8 +43,7 @@ static void put_sets(FILE *const to, const struct dig_trace *const trace)
     for (size_t s = 0; s < trace->sets; s++) {
         (void)fputs(s == 0 ? "[" : ", [", to);
         for (size_t e = 0; e < trace->set[s].effects; e++) {
-            (void)fprintf(to, "%s\"%s\"", e == 0 ? "" : ", ",
-                          dig_effect_name(trace->set[s].effect[e]));
+            dig_json_put(to, e == 0 ? "%s" : ", %s", dig_effect_name(trace->set[s].effect[e]));
         }
         (void)fputs("]", to);
     }
@@ -66,22 +68,19 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
     (void)fputs(" \"effects\": [", to);
     for (size_t e = 0; e < trace->effects; e++) {
         const struct dig_model_effect *const effect = &trace->effect[e];
-        (void)fprintf(to, "%s\n  {\"name\": \"%s\"", e == 0 ? "" : ",",
-                      dig_effect_name(effect->effect));
-        dig_json_member(to, ", ", "probability", effect->probability);
-        (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(trace->seen_in[e]));
+        (void)fputs(e == 0 ? "\n  " : ",\n  ", to);
+        dig_json_put(to, "{\"name\": %s, \"probability\": %g, \"seen_in\": %s",
+                     dig_effect_name(effect->effect), effect->probability,
+                     dig_part_name(trace->seen_in[e]));
         if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
-            dig_json_text(to, "", "depends_on", trace->unlisted->depends_on);
-            (void)fputs(", ", to);
+            dig_json_put(to, ", \"depends_on\": %s", trace->unlisted->depends_on);
         }
         char text[256];
         dig_trace_meaning(trace, e, sizeof text, text);
         if (text[0] != '\0') {
-            dig_json_text(to, "", "meaning", text);
-            (void)fputs(", ", to);
+            dig_json_put(to, ", \"meaning\": %s", text);
         }
         put_parameters(to, effect->parameters, effect->parameter);
-        (void)fputs("}", to);
     }
     (void)fputs("],\n", to);
 }
@@ -90,16 +89,13 @@ static void put_material(FILE *const to, const struct dig_trace *const trace)
 {
     (void)fputs(" \"material\": {", to);
     for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "%s\"%s\": ", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a));
-        dig_json_member(to, "{", "value", trace->gravel.value[a]);
-        dig_json_member(to, ", ", "low", trace->low.value[a]);
-        dig_json_member(to, ", ", "high", trace->high.value[a]);
-        (void)fputs("}", to);
+        put_interval(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
+                     trace->gravel.value[a], trace->low.value[a], trace->high.value[a]);
     }
     (void)fputs("},\n \"material_before\": {", to);
     for (int a = 0; a < DIG_AXES; a++) {
-        dig_json_member(to, a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
-                        trace->gravel_before.value[a]);
+        dig_json_put(to, a == 0 ? "%s: %g" : ", %s: %g", dig_axis_name((enum dig_axis)a),
+                     trace->gravel_before.value[a]);
     }
     (void)fputs("},\n", to);
 }
@@ -107,11 +103,8 @@ static void put_material(FILE *const to, const struct dig_trace *const trace)
 static void put_error(FILE *const to, const char *const name,
                       const struct dig_error_range *const range)
 {
-    (void)fprintf(to, " \"%s\": ", name);
-    dig_json_member(to, "{", "holdout", range->value);
-    dig_json_member(to, ", ", "low", range->low);
-    dig_json_member(to, ", ", "high", range->high);
-    (void)fputs("},\n", to);
+    dig_json_put(to, " %s: {\"holdout\": %g, \"low\": %g, \"high\": %g},\n", name, range->value,
+                 range->low, range->high);
 }
 
 static void put_candidates(FILE *const to, const struct dig_trace *const trace)
@@ -119,14 +112,13 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
     (void)fputs(" \"candidates\": [", to);
     for (size_t i = 0; i < trace->candidates; i++) {
         const struct dig_candidate *const c = &trace->candidate[i];
-        (void)fprintf(to, "%s\n  {\"name\": \"%s\"", i == 0 ? "" : ",", dig_effect_name(c->effect));
-        dig_json_member(to, ", ", "log_evidence", c->log_evidence);
-        dig_json_member(to, ", ", "p_fit", c->p_fit);
-        dig_json_member(to, ", ", "inclusion", c->inclusion);
-        dig_json_member(to, ", ", "error", c->error);
-        (void)fprintf(to, ", \"seen_in\": \"%s\", ", dig_part_name(c->seen_in));
+        (void)fputs(i == 0 ? "\n  " : ",\n  ", to);
+        dig_json_put(to,
+                     "{\"name\": %s, \"log_evidence\": %g, \"p_fit\": %g, \"inclusion\": %g, "
+                     "\"error\": %g, \"seen_in\": %s",
+                     dig_effect_name(c->effect), c->log_evidence, c->p_fit, c->inclusion, c->error,
+                     dig_part_name(c->seen_in));
         put_parameters(to, c->parameters, c->parameter);
-        (void)fputs("}", to);
     }
     (void)fputs("],\n", to);
 }
@@ -138,13 +130,12 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
     for (size_t i = 0; i < trace->tells; i++) {
         const struct dig_tell_apart *const tell = &trace->tell[i];
         const bool                         told = tell->how[0] != '\0';
-        (void)fprintf(to, "%s\n  {\"effects\": [\"%s\", \"%s\"], \"in\": ", i == 0 ? "" : ",",
-                      dig_effect_name(tell->effect[0]), dig_effect_name(tell->effect[1]));
+        (void)fputs(i == 0 ? "\n  " : ",\n  ", to);
+        dig_json_put(to, "{\"effects\": [%s, %s], \"in\": ", dig_effect_name(tell->effect[0]),
+                     dig_effect_name(tell->effect[1]));
         (void)fputs(told ? (tell->in_air ? "\"air\"" : "\"soil\"") : "null", to);
-        dig_json_text(to, ", ", "how", tell->how);
-        dig_json_member(to, ", ", "sigmas", told ? tell->sigmas : (double)NAN);
-        dig_json_member(to, ", ", "repeats", told ? tell->repeats : (double)NAN);
-        (void)fputs("}", to);
+        dig_json_put(to, ", \"how\": %s, \"sigmas\": %g, \"repeats\": %g}", tell->how,
+                     told ? tell->sigmas : (double)NAN, told ? tell->repeats : (double)NAN);
     }
     (void)fputs("]", to);
 }
@@ -152,33 +143,32 @@ static void put_tells(FILE *const to, const struct dig_trace *const trace)
 void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
 {
     assert(trace != NULL && to != NULL);
-    (void)fprintf(to, "{\"significant\": %s", trace->significant ? "true" : "false");
-    dig_json_member(to, ", ", "p_complete", trace->p_complete);
-    dig_json_member(to, ", ", "false_alarm", trace->false_alarm);
-    dig_json_member(to, ", ", "noise_floor", trace->noise_floor);
-    (void)fputs(",\n ", to);
+    dig_json_put(to,
+                 "{\"significant\": %i, \"p_complete\": %g, \"false_alarm\": %g, "
+                 "\"noise_floor\": %g,\n ",
+                 trace->significant, trace->p_complete, trace->false_alarm, trace->noise_floor);
     put_verdict(to, trace);
-    (void)fprintf(to, " \"applied\": %s,\n", trace->applied ? "true" : "false");
+    dig_json_put(to, " \"applied\": %i,\n", trace->applied);
     put_sets(to, trace);
     put_effects(to, trace);
     put_material(to, trace);
     put_error(to, "error_before", &trace->before);
     put_error(to, "error_after", &trace->after);
-    (void)fprintf(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->digs,
-                  trace->holdouts);
+    dig_json_put(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->digs,
+                 trace->holdouts);
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
-        dig_json_member(to, p == 0 ? "" : ", ", dig_part_name((enum dig_part)p),
-                        trace->residual[p]);
+        dig_json_put(to, p == 0 ? "%s: %g" : ", %s: %g", dig_part_name((enum dig_part)p),
+                     trace->residual[p]);
     }
-    (void)fprintf(to, "}, \"no_air\": %s,\n", trace->no_air ? "true" : "false");
+    dig_json_put(to, "}, \"no_air\": %i,\n", trace->no_air);
     put_candidates(to, trace);
     dig_residuals_json(trace->residuals, to);
-    dig_json_text(to, " ", "advice", trace->advice);
+    dig_json_put(to, " \"advice\": %s", trace->advice);
     put_tells(to, trace);
-    dig_json_text(to, ",\n ", "command", trace->command);
-    (void)fputs(",\n \"metric\": \"relative Euclidean norm of the moment, moving average "
-                "±0.16 s\"}\n",
-                to);
+    dig_json_put(to,
+                 ",\n \"command\": %s,\n \"metric\": \"relative Euclidean norm of the moment, "
+                 "moving average ±0.16 s\"}\n",
+                 trace->command);
 }
 
 // Of a trace that found no effect.

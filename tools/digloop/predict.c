@@ -1,4 +1,4 @@
-#include "core/text.h"
+#include "closed_loop/report/json.h"
 #include "core/units.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"
@@ -52,13 +52,13 @@ static enum dig_status write_curve(const char *const path, const struct dig_curv
     return status;
 }
 
-static void put_array(FILE *const to, const char *const name, const float curve[DIG_CURVE_POINTS])
+static void put_array(const char *const name, const float curve[DIG_CURVE_POINTS])
 {
-    (void)fprintf(to, ",\n \"%s\": [", name);
+    dig_json_put(stdout, ",\n %s: [", name);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fprintf(to, "%s%.5g", k == 0 ? "" : ", ", (double)curve[k]);
+        dig_json_put(stdout, k == 0 ? "%.5g" : ", %.5g", (double)curve[k]);
     }
-    (void)fputs("]", to);
+    (void)fputs("]", stdout);
 }
 
 // A prediction, and its error against measured digs.
@@ -117,12 +117,12 @@ static void print_text(const struct digloop_options *const options,
 
 static void put_on_machine(const struct on_machine *const m, const char *const name)
 {
-    (void)fputs(",\n \"machine\": {\"name\": ", stdout);
-    dig_text_put_json(stdout, name);
-    (void)printf(", \"lambda\": %.6g, \"duration_s\": %.6g, \"peak_Nm\": %.6g, \"peak_sigma_Nm\": "
-                 "%.6g, \"energy_J\": %.6g, \"energy_sigma_J\": %.6g}",
-                 m->lambda, m->duration_s, m->peak_Nm, m->peak_sigma_Nm, m->energy_J,
-                 m->energy_sigma_J);
+    dig_json_put(
+        stdout,
+        ",\n \"machine\": {\"name\": %s, \"lambda\": %g, \"duration_s\": %g, \"peak_Nm\": %g, "
+        "\"peak_sigma_Nm\": %g, \"energy_J\": %g, \"energy_sigma_J\": %g}",
+        name, m->lambda, m->duration_s, m->peak_Nm, m->peak_sigma_Nm, m->energy_J,
+        m->energy_sigma_J);
 }
 
 static void print(const struct digloop_options *const options, const struct prediction *const p,
@@ -136,13 +136,13 @@ static void print(const struct digloop_options *const options, const struct pred
         print_text(options, p, how, machine);
         return;
     }
-    (void)fputs("{\"trajectory\": ", stdout);
-    dig_text_put_json(stdout, p->trajectory.name);
-    (void)printf(", \"peak_Nm\": %.6g, \"peak_sigma_Nm\": %.6g, "
-                 "\"energy_J\": %.6g, \"energy_sigma_J\": %.6g",
-                 whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J, whole->energy_sigma_J);
+    dig_json_put(stdout,
+                 "{\"trajectory\": %s, \"peak_Nm\": %g, \"peak_sigma_Nm\": %g, \"energy_J\": %g, "
+                 "\"energy_sigma_J\": %g",
+                 p->trajectory.name, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
+                 whole->energy_sigma_J);
     if (how[0] != '\0') {
-        (void)printf(", \"depth\": %.6g, \"attack_deg\": %.6g", options->approach.depth,
+        dig_json_put(stdout, ", \"depth\": %g, \"attack_deg\": %g", options->approach.depth,
                      options->approach.attack_rad / DIG_RAD_PER_DEG);
     }
     if (options->measured != NULL) {
@@ -152,12 +152,12 @@ static void print(const struct digloop_options *const options, const struct pred
         const struct on_machine m = on_machine(p, machine->lambda);
         put_on_machine(&m, machine->machine.name);
     }
-    put_array(stdout, "moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
-    put_array(stdout, "sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);
-    put_array(stdout, "force_x_N", curve->mean[DIG_CHANNEL_FX_N]);
-    put_array(stdout, "force_z_N", curve->mean[DIG_CHANNEL_FZ_N]);
-    put_array(stdout, "sigma_force_x_N", curve->sd[DIG_CHANNEL_FX_N]);
-    put_array(stdout, "sigma_force_z_N", curve->sd[DIG_CHANNEL_FZ_N]);
+    put_array("moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
+    put_array("sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);
+    put_array("force_x_N", curve->mean[DIG_CHANNEL_FX_N]);
+    put_array("force_z_N", curve->mean[DIG_CHANNEL_FZ_N]);
+    put_array("sigma_force_x_N", curve->sd[DIG_CHANNEL_FX_N]);
+    put_array("sigma_force_z_N", curve->sd[DIG_CHANNEL_FZ_N]);
     (void)puts("}");
 }
 

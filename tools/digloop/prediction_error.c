@@ -83,17 +83,16 @@ enum dig_status digloop_prediction_error_measure(const struct digloop_job *const
 
 static void put_list(const char *const name, const size_t n, const double value[])
 {
-    (void)printf(", \"%s\": [", name);
+    dig_json_put(stdout, ", %s: [", name);
     for (size_t i = 0; i < n; i++) {
-        (void)printf("%s", i == 0 ? "" : ", ");
-        dig_json_number(stdout, value[i]);
+        dig_json_put(stdout, i == 0 ? "%g" : ", %g", value[i]);
     }
-    (void)printf("]");
+    (void)fputs("]", stdout);
 }
 
 void digloop_prediction_error_put(const struct digloop_prediction_error *const errors)
 {
-    (void)printf(", \"error\": %.6g, \"noise_floor\": %.6g", dig_score_error(&errors->score),
+    dig_json_put(stdout, ", \"error\": %g, \"noise_floor\": %g", dig_score_error(&errors->score),
                  dig_score_noise_floor(&errors->score));
     double inside[DIG_FORCE_CHANNELS];
     for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {

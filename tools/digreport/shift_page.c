@@ -25,15 +25,13 @@ static void put_effects(const struct dig_model *const model, FILE *const to)
         const struct dig_model_effect *const effect = &model->effect[e];
         for (size_t p = 0; p < effect->parameters; p++) {
             const struct dig_model_parameter *const q = &effect->parameter[p];
-            (void)fprintf(to, "<tr><th>%s</th><td>", dig_effect_name(effect->effect));
-            dig_html_text(to, q->name);
-            (void)fprintf(to, "</td><td>%.4g</td><td>%.4g to %.4g</td></tr>\n", q->value, q->low,
-                          q->high);
+            dig_html_put(to, "<tr><th>%s</th><td>%s</td><td>%.4g</td><td>%.4g to %.4g</td></tr>\n",
+                         dig_effect_name(effect->effect), q->name, q->value, q->low, q->high);
         }
     }
     if (model->unlisted != NULL) {
-        dig_html_between(to, "<tr><th>unlisted</th><td>depends on ", model->unlisted->depends_on,
-                         "</td><td></td><td></td></tr>\n");
+        dig_html_put(to, "<tr><th>unlisted</th><td>depends on %s</td><td></td><td></td></tr>\n",
+                     model->unlisted->depends_on);
     }
     (void)fputs("</table>\n", to);
 }
@@ -65,12 +63,11 @@ static void put_events(const struct digreport_shift *const shift, FILE *const to
         } else {
             dig_html_without_folders(to, e->said);
         }
+        (void)fputs("</td><td>", to);
         if (e->count > 0) {
-            (void)fprintf(to, "</td><td>%" PRId64 "</td><td>", e->count);
-        } else {
-            (void)fputs("</td><td></td><td>", to);
+            (void)fprintf(to, "%" PRId64, e->count);
         }
-        dig_html_between(to, "", e->text != NULL ? e->text->todo : "", "</td></tr>\n");
+        dig_html_put(to, "</td><td>%s</td></tr>\n", e->text != NULL ? e->text->todo : "");
     }
     (void)fputs("</table>\n", to);
 }
@@ -87,9 +84,8 @@ static void put_subject(const struct digreport_page *const page, FILE *const to)
     (void)fprintf(to, "</p>\n<p>%s to %s, from %zu log%s. ", from, until, page->subject->logs,
                   page->subject->logs == 1 ? "" : "s");
     if (shift->lambda > 0.0) {
-        dig_html_between(to, "Machine ", page->subject->machine, ", table of scene ");
-        dig_html_text(to, page->subject->scene);
-        (void)fprintf(to, "; the machine is %.3g times the rig. ", shift->lambda);
+        dig_html_put(to, "Machine %s, table of scene %s; the machine is %.3g times the rig. ",
+                     page->subject->machine, page->subject->scene, shift->lambda);
     } else {
         (void)fputs("All at machine scale; <code>--table</code> and <code>--machine</code> add the "
                     "rig's. ",

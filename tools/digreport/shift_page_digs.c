@@ -156,23 +156,20 @@ static void put_digs(const struct digreport_shift *const shift, FILE *const to)
         const char *const                 ended = digreport_ending_name(d->ended);
         (void)fputs("<tr>", to);
         digreport_page_time_cell(to, d->time_us);
-        (void)fprintf(to, "<td>%" PRId32 "</td><td>", d->number);
-        dig_html_text(to, d->trajectory[0] != '\0' ? d->trajectory : "–");
-        (void)fprintf(to, "</td><td>%s</td>", ended[0] != '\0' ? ended : "–");
-        dig_html_cell(to, 1, d->duration_s);
-        dig_html_cell(to, 1, 1e-3 * d->peak_Nm);
+        dig_html_put(to, "<td>%" PRId32 "</td><td>%s</td><td>%s</td><td>%.1f</td><td>%.1f</td>",
+                     d->number, d->trajectory[0] != '\0' ? d->trajectory : "–",
+                     ended[0] != '\0' ? ended : "–", d->duration_s, 1e-3 * d->peak_Nm);
         put_predicted(to, 1, 1e-3 * d->predicted_peak_Nm, 1e-3 * d->predicted_peak_sigma_Nm);
         if (scaled) {
-            dig_html_cell(to, 2, to_rig * d->peak_Nm);
+            dig_html_put(to, "<td>%.2f</td>", to_rig * d->peak_Nm);
         }
-        dig_html_cell(to, 1, 1e-3 * d->energy_J);
+        dig_html_put(to, "<td>%.1f</td>", 1e-3 * d->energy_J);
         put_predicted(to, 1, 1e-3 * d->predicted_energy_J, 1e-3 * d->predicted_energy_sigma_J);
         if (scaled) {
-            dig_html_cell(to, 2, to_rig * d->energy_J);
+            dig_html_put(to, "<td>%.2f</td>", to_rig * d->energy_J);
         }
-        dig_html_cell(to, 0, 100.0 * d->error);
-        dig_html_cell(to, 0, 100.0 * d->noise_floor);
-        (void)fputs("</tr>\n", to);
+        dig_html_put(to, "<td>%.0f</td><td>%.0f</td></tr>\n", 100.0 * d->error,
+                     100.0 * d->noise_floor);
     }
     (void)fputs("</table>\n", to);
 }

@@ -59,7 +59,7 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
     (void)fputs("<tr>", to);
     digreport_page_time_cell(to, g->time_us);
     if (!g->known) {
-        dig_html_between(to, "<td colspan=5>not known any more: ", g->wanted, "</td></tr>\n");
+        dig_html_put(to, "<td colspan=5>not known any more: %s</td></tr>\n", g->wanted);
         return;
     }
     for (int a = 0; a < DIG_AXES; a++) {
@@ -71,7 +71,7 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
                   g->digs, g->forces ? "with force" : "moment alone",
                   g->outside ? "outside the table: the nearest" : "");
     if (g->untold[0] != '\0') {
-        dig_html_between(to, "a family; not told: ", g->untold, "");
+        dig_html_put(to, "a family; not told: %s", g->untold);
     }
     (void)fputs("</td></tr>\n", to);
 }

@@ -127,18 +127,10 @@ void digreport_shift_csv(const struct digreport_shift *const shift, FILE *const 
     }
 }
 
-static void put_json_time(const char *const before, const char *const name, const int64_t time_us,
-                          FILE *const to)
-{
-    char time[DIGREPORT_TIME];
-    digreport_time(time_us, time);
-    dig_json_text(to, before, name, time);
-}
-
 static void put_json_numbers(const int n, const struct number number[], FILE *const to)
 {
     for (int k = 0; k < n; k++) {
-        dig_json_member(to, ", ", number[k].name, number[k].value);
+        dig_json_put(to, ", %s: %g", number[k].name, number[k].value);
     }
     (void)fputc('}', to);
 }
@@ -147,39 +139,47 @@ void digreport_shift_json(const struct digreport_shift *const shift, FILE *const
 {
     assert(shift != NULL && to != NULL);
     struct number number[OF_DIG];
-    put_json_time("{", "from_utc", shift->first_us, to);
-    put_json_time(", ", "to_utc", shift->last_us, to);
-    dig_json_member(to, ", ", "lambda", shift->lambda > 0.0 ? shift->lambda : (double)NAN);
-    (void)fprintf(to, ", \"misread\": %" PRId64 ", \"digs\": [", shift->misread);
+    char          from[DIGREPORT_TIME];
+    char          until[DIGREPORT_TIME];
+    digreport_time(shift->first_us, from);
+    digreport_time(shift->last_us, until);
+    dig_json_put(to,
+                 "{\"from_utc\": %s, \"to_utc\": %s, \"lambda\": %g, \"misread\": %" PRId64
+                 ", \"digs\": [",
+                 from, until, shift->lambda > 0.0 ? shift->lambda : (double)NAN, shift->misread);
     for (size_t i = 0; i < shift->digs; i++) {
         const struct digreport_dig *const d = &shift->dig[i];
-        put_json_time(i == 0 ? "\n {" : ",\n {", "time_utc", d->time_us, to);
-        (void)fprintf(to, ", \"dig\": %" PRId32, d->number);
-        dig_json_text(to, ", ", "trajectory", d->trajectory);
-        dig_json_text(to, ", ", "ended", digreport_ending_name(d->ended));
+        digreport_time(d->time_us, from);
+        (void)fputs(i == 0 ? "\n " : ",\n ", to);
+        dig_json_put(to,
+                     "{\"time_utc\": %s, \"dig\": %" PRId32 ", \"trajectory\": %s, \"ended\": %s",
+                     from, d->number, d->trajectory, digreport_ending_name(d->ended));
         numbers_of_dig(shift, d, number);
         put_json_numbers(OF_DIG, number, to);
     }
     (void)fputs("],\n\"gravels\": [", to);
     for (size_t i = 0; i < shift->gravels; i++) {
         const struct digreport_gravel *const g = &shift->gravel[i];
-        put_json_time(i == 0 ? "\n {" : ",\n {", "time_utc", g->time_us, to);
-        (void)fprintf(to, ", \"known\": %s, \"outside\": %s, \"forces\": %s, \"digs\": %" PRId32,
-                      g->known ? "true" : "false", g->outside ? "true" : "false",
-                      g->forces ? "true" : "false", g->digs);
-        dig_json_text(to, ", ", "untold", g->untold);
+        digreport_time(g->time_us, from);
+        (void)fputs(i == 0 ? "\n " : ",\n ", to);
+        dig_json_put(to,
+                     "{\"time_utc\": %s, \"known\": %i, \"outside\": %i, \"forces\": %i, "
+                     "\"digs\": %" PRId32 ", \"untold\": %s",
+                     from, g->known, g->outside, g->forces, g->digs, g->untold);
         numbers_of_gravel(g->known ? g : NULL, number);
         put_json_numbers(OF_GRAVEL, number, to);
     }
     (void)fputs("],\n\"troubles\": [", to);
     for (size_t i = 0; i < shift->events; i++) {
         const struct digreport_event *const e = &shift->event[i];
-        put_json_time(i == 0 ? "\n {" : ",\n {", "from_utc", e->from_us, to);
-        put_json_time(", ", "to_utc", e->to_us, to);
-        (void)fprintf(to, ", \"count\": %" PRId64, e->count);
-        dig_json_text(to, ", ", "what", e->text != NULL ? e->text->what : e->said);
-        dig_json_text(to, ", ", "todo", e->text != NULL ? e->text->todo : "");
-        (void)fputc('}', to);
+        digreport_time(e->from_us, from);
+        digreport_time(e->to_us, until);
+        (void)fputs(i == 0 ? "\n " : ",\n ", to);
+        dig_json_put(to,
+                     "{\"from_utc\": %s, \"to_utc\": %s, \"count\": %" PRId64
+                     ", \"what\": %s, \"todo\": %s}",
+                     from, until, e->count, e->text != NULL ? e->text->what : e->said,
+                     e->text != NULL ? e->text->todo : "");
     }
     (void)fputs("]}\n", to);
 }

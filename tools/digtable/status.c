@@ -57,25 +57,22 @@ static void put_json(const struct status *const s)
 {
     char        words[300];
     const char *gap = "";
-    dig_json_text(stdout, "{", "table", s->folder.table);
-    (void)printf(",\n \"job\": \"%s\",\n \"shards\": %zu,\n", s->folder.plan.job,
-                 s->folder.plan.tasks);
+    dig_json_put(stdout, "{\"table\": %s,\n \"job\": %s,\n \"shards\": %zu,\n", s->folder.table,
+                 s->folder.plan.job, s->folder.plan.tasks);
     for (enum dig_shard_state state = DIG_SHARD_WAITING; state < DIG_SHARD_STATES; state++) {
-        (void)printf(" \"%s\": %zu,\n", dig_shard_state_name(state), s->state.count[state]);
+        dig_json_put(stdout, " %s: %zu,\n", dig_shard_state_name(state), s->state.count[state]);
     }
-    (void)printf(" \"merge\": \"%s\",\n \"digs\": %zu,\n \"digs_done\": %zu",
+    dig_json_put(stdout,
+                 " \"merge\": %s,\n \"digs\": %zu,\n \"digs_done\": %zu,\n \"dig_s\": %g,\n"
+                 " \"left_s\": %g,\n \"failures\": [",
                  dig_shard_state_name(s->state.shard[DIG_JOB_MERGE]), s->progress.digs,
-                 s->progress.digs_done);
-    dig_json_member(stdout, ",\n ", "dig_s", s->progress.dig_s);
-    dig_json_member(stdout, ",\n ", "left_s", s->progress.left_s);
-    (void)printf(",\n \"failures\": [");
+                 s->progress.digs_done, s->progress.dig_s, s->progress.left_s);
     for (size_t task = 0; task <= s->folder.plan.tasks; task++) {
         if (s->state.shard[task] == DIG_SHARD_FAILED) {
             words_of(s, task, words);
             (void)printf("%s\n  {\"shard\": ", gap);
             (void)printf(task == DIG_JOB_MERGE ? "\"merge\"" : "%zu", task);
-            dig_json_text(stdout, ", ", "error", words);
-            (void)printf("}");
+            dig_json_put(stdout, ", \"error\": %s}", words);
             gap = ",";
         }
     }
