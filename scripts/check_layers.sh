@@ -23,7 +23,7 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
 core                   approach bed bed_plan chance command_line contact curve did_you_mean effect entry_set error
-                       geometry gravel_match ground linkage log_normal machine model name observation outline part
+                       geometry gravel_match ground linkage log_normal machine model name observation outline part process
                        recording regular sample scene sha256 shell similar sort status streams table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml yaml_schema

@@ -1,18 +1,13 @@
 #include "closed_loop/report/plot.h"
 
 #include "closed_loop/report/html.h"
+#include "core/process.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-extern char **environ; // NOLINT(readability-redundant-declaration): POSIX leaves it undeclared
 
 // Around gnuplot's picture, in pixels of the whole one.
 enum { LINE = 20, LEFT = 22, SAMPLE = 28, LETTER = 8, GAP = 16 };
@@ -69,30 +64,12 @@ static void put_script(FILE *const to, const struct dig_plot *const plot, const 
 static enum dig_status run_gnuplot(FILE *const script, FILE *const svg,
                                    struct dig_error *const error)
 {
-    char                       program[] = "gnuplot";
-    char                       option[]  = "-d";
-    char                       input[]   = "-";
-    char *const                argv[]    = { program, option, input, NULL };
-    posix_spawn_file_actions_t actions;
-    pid_t                      child  = -1;
-    int                        status = -1;
-
-    (void)posix_spawn_file_actions_init(&actions);
-    (void)posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
-    (void)posix_spawn_file_actions_adddup2(&actions, fileno(svg), STDOUT_FILENO);
-    (void)posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", 1, 0);
-    const int failed = posix_spawnp(&child, program, &actions, NULL, argv, environ);
-    (void)posix_spawn_file_actions_destroy(&actions);
-    if (failed != 0) {
-        return dig_error_set(error, DIG_EIO, "gnuplot: %s, expected in PATH (package gnuplot-nox)",
-                             strerror(failed));
-    }
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        return dig_error_set(error, DIG_EIO, "gnuplot failed with status %d", status);
-    }
-    return DIG_OK;
+    const char *const        argv[]  = { "gnuplot", "-d", "-", NULL };
+    const struct dig_process process = { .argv = argv, .in = script, .out = svg };
+    struct dig_error         why     = { "" };
+    return dig_process_run(&process, &why) == DIG_OK
+               ? DIG_OK
+               : dig_error_set(error, DIG_EIO, "%s (package gnuplot-nox)", why.text);
 }
 
 // What gnuplot drew, without the <svg> element it stands in: a page's style for pictures would

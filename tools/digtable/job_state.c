@@ -1,8 +1,8 @@
 #include "tools/digtable/job_state.h"
 
+#include "core/process.h"
 #include "core/regular.h"
 #include "tables/store.h"
-#include "tools/digtable/process.h"
 #include "tools/digtable/slurm.h"
 
 #include <assert.h>

@@ -1,6 +1,6 @@
 #include "tools/digtable/slurm.h"
 
-#include "tools/digtable/process.h"
+#include "core/process.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,13 +1,13 @@
 // digtable submit: what of a table's shards is neither done nor at work is computed, here or by
 // Slurm. Exactly once: whoever submits holds the folder's lock from looking to having submitted.
 
+#include "core/process.h"
 #include "core/text.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/job_folder.h"
 #include "tools/digtable/job_script.h"
 #include "tools/digtable/job_state.h"
 #include "tools/digtable/plan.h"
-#include "tools/digtable/process.h"
 #include "tools/digtable/slurm.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-#include "tools/digtable/process.h"
+#include "core/process.h"
 
 #include "core/text.h"
 
@@ -78,14 +78,15 @@ static int start(const struct dig_process *const p, FILE *const err, char **cons
     return failed;
 }
 
-// Looks now and then: a signal may come just before a wait without end.
+// Looks now and then where it may be stopped: a signal may come just before a wait without end.
 static int wait_for(const pid_t child, const volatile sig_atomic_t *const stop)
 {
     const struct timespec pause  = { .tv_nsec = 10000000 };
     bool                  told   = false;
     int                   how    = -1;
     pid_t                 waited = 0;
-    while ((waited = waitpid(child, &how, WNOHANG)) == 0 || (waited < 0 && errno == EINTR)) {
+    const int             wait   = stop != NULL ? WNOHANG : 0;
+    while ((waited = waitpid(child, &how, wait)) == 0 || (waited < 0 && errno == EINTR)) {
         if (!told && stop != NULL && *stop != 0) {
             (void)kill(-child, SIGTERM);
             told = true;

@@ -1,7 +1,7 @@
 // Other programs, started by their arguments: no shell reads a line of ours.
 
-#ifndef DIG_TOOLS_DIGTABLE_PROCESS_H
-#define DIG_TOOLS_DIGTABLE_PROCESS_H
+#ifndef DIG_CORE_PROCESS_H
+#define DIG_CORE_PROCESS_H
 
 #include "core/error.h"
 
@@ -27,4 +27,4 @@ DIG_MUST_CHECK enum dig_status dig_process_run(const struct dig_process *process
 /// The last line of a file that is not blank, as far as it fits; "" where there is none.
 void dig_process_last_line(FILE *file, size_t size, char line[]);
 
-#endif // DIG_TOOLS_DIGTABLE_PROCESS_H
+#endif // DIG_CORE_PROCESS_H

@@ -1,6 +1,6 @@
-// Tests for tools/digtable/process.c
+// Tests for core/process.c
 
-#include "tools/digtable/process.h"
+#include "core/process.h"
 
 #include "tests/testlib.h"
 
