@@ -43,44 +43,30 @@ static enum dig_status copy(const struct dig_machine_recording *const recording,
     return DIG_OK;
 }
 
-static struct dig_check_item *ask(struct dig_machine_air_check *const check,
-                                  const enum dig_check_question question, const int joint,
-                                  const bool as_filed, const double other_sigmas)
-{
-    struct dig_check_item *const item = dig_check_add(check, question, joint);
-    item->value                       = other_sigmas;
-    item->excess                      = other_sigmas;
-    const bool told                   = other_sigmas >= told_sigmas;
-    item->verdict                     = as_filed ? (told ? DIG_CHECK_OK : DIG_CHECK_UNTOLD)
-                                        : told   ? DIG_CHECK_WRONG
-                                                 : DIG_CHECK_DOUBTFUL;
-    return item;
-}
-
 // One question of every joint, so that the list reads joint by joint within a question.
 static void check_reading(const struct dig_reading_finding *const f,
                           struct dig_machine_air_check *const     check)
 {
-    const struct dig_reading *const best = &f->best;
-
+    static const enum dig_check_question question[DIG_READING_QUESTIONS] = {
+        [DIG_READING_TURNED]  = DIG_CHECK_DIRECTION,
+        [DIG_READING_DRIVE]   = DIG_CHECK_CYLINDER,
+        [DIG_READING_SWAPPED] = DIG_CHECK_SIDES,
+        [DIG_READING_FACTOR]  = DIG_CHECK_UNIT,
+    };
     dig_check_add(check, DIG_CHECK_DEGREES, -1)->verdict =
-        best->degrees ? DIG_CHECK_WRONG : DIG_CHECK_OK;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        (void)ask(check, DIG_CHECK_DIRECTION, j, !best->turned[j],
-                  f->sigmas[DIG_READING_TURNED][j]);
-    }
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        ask(check, DIG_CHECK_CYLINDER, j, best->drive[j] == (enum dig_joint)j,
-            f->sigmas[DIG_READING_DRIVE][j])
-            ->answer = (int)best->drive[j];
-    }
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        (void)ask(check, DIG_CHECK_SIDES, j, !best->swapped[j], f->sigmas[DIG_READING_SWAPPED][j]);
-    }
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        ask(check, DIG_CHECK_UNIT, j, !(fabs(best->factor[j] - 1.0) > 0.0),
-            f->sigmas[DIG_READING_FACTOR][j])
-            ->value = best->factor[j];
+        f->best.degrees ? DIG_CHECK_WRONG : DIG_CHECK_OK;
+    for (size_t q = 0; q < DIG_READING_QUESTIONS; q++) {
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            struct dig_check_item *const item = dig_check_add(check, question[q], (int)j);
+            const bool                   told = f->sigmas[q][j] >= told_sigmas;
+
+            item->answer  = (int)f->best.drive[j];
+            item->value   = q == DIG_READING_FACTOR ? f->best.factor[j] : f->sigmas[q][j];
+            item->excess  = f->sigmas[q][j];
+            item->verdict = f->plain[q][j] ? (told ? DIG_CHECK_OK : DIG_CHECK_UNTOLD)
+                            : told         ? DIG_CHECK_WRONG
+                                           : DIG_CHECK_DOUBTFUL;
+        }
     }
 }
 

@@ -405,6 +405,7 @@ static void write_finding(const struct search *const s, struct dig_reading_findi
             const size_t plain = q == DIG_READING_DRIVE ? j : 0;
             const double other = other_of(s->least[q][j], s->answer[q][j], plain);
 
+            finding->plain[q][j]  = s->answer[q][j] == plain;
             finding->sigmas[q][j] = s->moves[j] && isfinite(other)
                                         ? sqrt(2.0 * fmax(other - s->cost, 0.0))
                                         : (double)NAN;

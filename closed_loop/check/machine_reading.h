@@ -52,6 +52,7 @@ enum dig_reading_question {
 /// where it is not that; NaN where there is no other, or the joint hardly moves and was not asked.
 struct dig_reading_finding {
     struct dig_reading best;
+    bool               plain[DIG_READING_QUESTIONS][DIG_JOINTS]; // it answers as the columns do
     double             sigmas[DIG_READING_QUESTIONS][DIG_JOINTS];
 };
 

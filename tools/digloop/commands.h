@@ -11,8 +11,7 @@
 
 #include <stdbool.h>
 
-#define DIGLOOP_RECORDINGS_MAX 64
-#define DIGLOOP_PATH_SIZE      1024
+#define DIGLOOP_PATH_SIZE 1024
 
 struct digloop_options {
     const char         *command, *table; // check: the machine's file

@@ -6,6 +6,7 @@
 #include "files/text/whole.h"
 
 #include <getopt.h>
+#include <limits.h>
 #include <string.h>
 
 #define INTO(field) DIG_INTO(struct digloop_options, field)
@@ -125,7 +126,8 @@ static int results_on_stdout(const struct digloop_options *const o)
            (int)dig_out_is_stdout(o->add) + (int)dig_out_is_stdout(o->json_out) + (int)o->json;
 }
 
-static enum dig_status check(const struct digloop_options *const o, struct dig_error *const error)
+static enum dig_status check(const struct dig_command *const     command,
+                             const struct digloop_options *const o, struct dig_error *const error)
 {
     if (results_on_stdout(o) > 1) {
         return dig_error_set(error, DIG_EINVAL, "two results on standard output, expected one");
@@ -133,28 +135,23 @@ static enum dig_status check(const struct digloop_options *const o, struct dig_e
     static const struct {
         const char *command;
         int         least, most; // recordings
-        const char *expected;
     } of[] = {
-        { "identify", 1, DIGLOOP_RECORDINGS_MAX, "TABLE.sqlite and 1 to 64 RECORDING" },
-        { "predict", 0, 0, "TABLE.sqlite --identified ID.json --trajectory NAME" },
-        { "trace", 1, 1, "TABLE.sqlite CAMPAIGN/" },
-        { "check", 1, 1, "MACHINE.yaml RECORDING" },
-        { "design", 0, 0, "TABLE.sqlite" },
+        { "identify", 1, INT_MAX }, { "predict", 0, 0 }, { "trace", 1, 1 },
+        { "check", 1, 1 },          { "design", 0, 0 },
     };
-    _Static_assert(DIGLOOP_RECORDINGS_MAX == 64, "the text says it");
     size_t i = 0;
     while (strcmp(o->command, of[i].command) != 0) {
         i++;
     }
-    if (o->recordings > of[i].most && of[i].most <= 1) {
+    if (o->recordings > of[i].most) {
         return dig_error_set(error, DIG_EINVAL, "%s: one argument too many",
                              o->recording[of[i].most]);
     }
     const bool named =
         strcmp(o->command, "predict") != 0 || (o->identified != NULL && o->trajectory != NULL);
-    return named && o->recordings >= of[i].least && o->recordings <= of[i].most
+    return named && o->recordings >= of[i].least
                ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL, "%s: expected %s", o->command, of[i].expected);
+               : dig_error_set(error, DIG_EINVAL, "%s: expected %s", o->command, command->usage);
 }
 
 enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_options *const options,
@@ -173,7 +170,7 @@ enum dig_status digloop_parse(const int argc, char *argv[], struct digloop_optio
     o.table                      = argv[optind];
     o.recording                  = argv + optind + 1;
     o.recordings                 = argc - optind - 1;
-    const enum dig_status status = check(&o, error);
+    const enum dig_status status = check(command, &o, error);
     if (status == DIG_OK) {
         *options = o;
     }

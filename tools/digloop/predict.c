@@ -70,20 +70,16 @@ struct prediction {
 };
 
 // The same dig by a machine: Froude similarity.
-struct on_machine {
-    double lambda, duration_s, peak_Nm, peak_sigma_Nm, energy_J, energy_sigma_J;
-};
-
-static struct on_machine on_machine(const struct prediction *const p, const double lambda)
+static struct dig_peak_energy on_machine(const struct dig_peak_energy *const w, const double lambda)
 {
     const double lambda4 = lambda * lambda * lambda * lambda;
-    return (struct on_machine){ .lambda = lambda,
-                                .duration_s =
-                                    sqrt(lambda) * dig_trajectory_duration_s(&p->trajectory),
-                                .peak_Nm        = lambda4 * p->whole.peak_Nm,
-                                .peak_sigma_Nm  = lambda4 * p->whole.peak_sigma_Nm,
-                                .energy_J       = lambda4 * p->whole.energy_J,
-                                .energy_sigma_J = lambda4 * p->whole.energy_sigma_J };
+    return (struct dig_peak_energy){ lambda4 * w->peak_Nm, lambda4 * w->peak_sigma_Nm,
+                                     lambda4 * w->energy_J, lambda4 * w->energy_sigma_J };
+}
+
+static double duration_s(const struct prediction *const p, const double lambda)
+{
+    return sqrt(lambda) * dig_trajectory_duration_s(&p->trajectory);
 }
 
 // For people: the result where none goes to a program.
@@ -98,12 +94,13 @@ static void print_text(const struct digloop_options *const options,
                   p->trajectory.name, how, p->whole.peak_Nm, p->whole.peak_sigma_Nm,
                   p->whole.energy_J, p->whole.energy_sigma_J);
     if (machine != NULL) {
-        const struct on_machine m = on_machine(p, machine->lambda);
+        const struct dig_peak_energy m = on_machine(&p->whole, machine->lambda);
         (void)fprintf(to,
                       "  by %s, %.2f times the table's bucket: peak %.4g ± %.2g kN·m, energy %.4g "
                       "± %.2g kJ, in %.1f s\n",
-                      machine->machine.name, m.lambda, 1e-3 * m.peak_Nm, 1e-3 * m.peak_sigma_Nm,
-                      1e-3 * m.energy_J, 1e-3 * m.energy_sigma_J, m.duration_s);
+                      machine->machine.name, machine->lambda, 1e-3 * m.peak_Nm,
+                      1e-3 * m.peak_sigma_Nm, 1e-3 * m.energy_J, 1e-3 * m.energy_sigma_J,
+                      duration_s(p, machine->lambda));
     }
     if (options->measured != NULL) {
         (void)fprintf(to,
@@ -115,32 +112,26 @@ static void print_text(const struct digloop_options *const options,
     }
 }
 
-static void put_on_machine(const struct on_machine *const m, const char *const name)
+static void put_whole(const struct dig_peak_energy *const w)
 {
-    dig_json_put(
-        stdout,
-        ",\n \"machine\": {\"name\": %s, \"lambda\": %g, \"duration_s\": %g, \"peak_Nm\": %g, "
-        "\"peak_sigma_Nm\": %g, \"energy_J\": %g, \"energy_sigma_J\": %g}",
-        name, m->lambda, m->duration_s, m->peak_Nm, m->peak_sigma_Nm, m->energy_J,
-        m->energy_sigma_J);
+    dig_json_put(stdout,
+                 ", \"peak_Nm\": %g, \"peak_sigma_Nm\": %g, \"energy_J\": %g, "
+                 "\"energy_sigma_J\": %g",
+                 w->peak_Nm, w->peak_sigma_Nm, w->energy_J, w->energy_sigma_J);
 }
 
 static void print(const struct digloop_options *const options, const struct prediction *const p,
                   const struct digloop_machine *const machine)
 {
-    const struct dig_peak_energy *const whole = &p->whole;
-    const struct dig_curve *const       curve = &p->curve;
-    char                                how[DIG_APPROACH_TEXT_SIZE];
+    const struct dig_curve *const curve = &p->curve;
+    char                          how[DIG_APPROACH_TEXT_SIZE];
     dig_approach_text(&options->approach, how);
     if (!options->json) {
         print_text(options, p, how, machine);
         return;
     }
-    dig_json_put(stdout,
-                 "{\"trajectory\": %s, \"peak_Nm\": %g, \"peak_sigma_Nm\": %g, \"energy_J\": %g, "
-                 "\"energy_sigma_J\": %g",
-                 p->trajectory.name, whole->peak_Nm, whole->peak_sigma_Nm, whole->energy_J,
-                 whole->energy_sigma_J);
+    dig_json_put(stdout, "{\"trajectory\": %s", p->trajectory.name);
+    put_whole(&p->whole);
     if (how[0] != '\0') {
         dig_json_put(stdout, ", \"depth\": %g, \"attack_deg\": %g", options->approach.depth,
                      options->approach.attack_rad / DIG_RAD_PER_DEG);
@@ -149,8 +140,11 @@ static void print(const struct digloop_options *const options, const struct pred
         digloop_prediction_error_put(&p->errors);
     }
     if (machine != NULL) {
-        const struct on_machine m = on_machine(p, machine->lambda);
-        put_on_machine(&m, machine->machine.name);
+        const struct dig_peak_energy m = on_machine(&p->whole, machine->lambda);
+        dig_json_put(stdout, ",\n \"machine\": {\"name\": %s, \"lambda\": %g, \"duration_s\": %g",
+                     machine->machine.name, machine->lambda, duration_s(p, machine->lambda));
+        put_whole(&m);
+        (void)fputs("}", stdout);
     }
     put_array("moment_Nm", curve->mean[DIG_CHANNEL_MY_Nm]);
     put_array("sigma_Nm", curve->sd[DIG_CHANNEL_MY_Nm]);

@@ -94,37 +94,16 @@ static enum dig_status take_engine(const char *const value, void *const into,
                          value);
 }
 
-// --time 1:00:00 is two words for sbatch, --sbatch-arg one: then option is NULL.
-static enum dig_status add_words(struct dig_arguments *const a, const char *const option,
-                                 const char *const value, struct dig_error *const error)
-{
-    if (a->slurm_options + 2 > DIG_SLURM_OPTIONS_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "%s %s: expected fewer words for sbatch",
-                             option != NULL ? option : "--sbatch-arg", value);
-    }
-    if (option != NULL) {
-        a->slurm_option[a->slurm_options++] = option;
-    }
-    a->slurm_option[a->slurm_options++] = value;
-    return DIG_OK;
-}
-
-static enum dig_status take_time(const char *const value, void *const into,
-                                 struct dig_error *const error)
-{
-    return add_words(into, "--time", value, error);
-}
-
-static enum dig_status take_partition(const char *const value, void *const into,
-                                      struct dig_error *const error)
-{
-    return add_words(into, "--partition", value, error);
-}
-
 static enum dig_status take_sbatch_arg(const char *const value, void *const into,
                                        struct dig_error *const error)
 {
-    return add_words(into, NULL, value, error);
+    struct dig_arguments *const a = into;
+    if (a->sbatch_args == DIG_SBATCH_ARGS_MAX) {
+        return dig_error_set(error, DIG_EINVAL, "--sbatch-arg %s: expected at most %d", value,
+                             DIG_SBATCH_ARGS_MAX);
+    }
+    a->sbatch_arg[a->sbatch_args++] = value;
+    return DIG_OK;
 }
 
 #define INTO(field) DIG_INTO(struct dig_arguments, field)
@@ -236,8 +215,8 @@ static const struct dig_option options[] = {
     { "slurm", NULL, " submit ", "submit to Slurm, do not compute here", INTO(slurm) },
     { "tasks", "N", " submit ", "shards, each one task (default: one a bed, at most 1000)",
       INTO(tasks), 1, DIG_JOB_TASKS_MAX },
-    { "time", "T", " submit ", "time limit of a task, as sbatch takes it", .take = take_time },
-    { "partition", "P", " submit ", "where Slurm is to run them", .take = take_partition },
+    { "time", "T", " submit ", "time limit of a task, as sbatch takes it", INTO(time) },
+    { "partition", "P", " submit ", "where Slurm is to run them", INTO(partition) },
     { "sbatch-arg", "A", " submit ", "one more argument for sbatch; repeatable",
       .take = take_sbatch_arg },
     { "quiet", NULL, " dig generate import seal submit ", "no progress, only what goes wrong",

@@ -13,8 +13,8 @@
 
 enum { EXIT_DONE = 0, EXIT_WORK_FAILED = 1, EXIT_BAD_INPUT = 2 };
 
-#define DIG_POSITIONALS_MAX   1024 // tables to merge
-#define DIG_SLURM_OPTIONS_MAX 32   // words for sbatch
+#define DIG_POSITIONALS_MAX 1024 // tables to merge
+#define DIG_SBATCH_ARGS_MAX 32   // --sbatch-arg
 
 struct dig_engine; // offline_dem/sweep/sweep.h
 
@@ -32,8 +32,8 @@ struct dig_arguments {
     uint64_t                  threads;                 // of a large bed
     uint64_t                  shard, shards;           // from 0; 0 shards: all
     uint64_t                  tasks;                   // 0: not given
-    const char               *slurm_option[DIG_SLURM_OPTIONS_MAX];
-    size_t                    slurm_options;
+    const char               *time, *partition, *sbatch_arg[DIG_SBATCH_ARGS_MAX]; // for Slurm
+    size_t                    sbatch_args;
     double                    time_limit_s;
     enum dig_channel          channel;
     struct dig_engine (*engine)(void);

@@ -14,21 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// Results go to stdout, or whole or not at all to -o.
-static int with_output(const struct dig_arguments *const a,
-                       enum dig_status (*const write)(void *context, FILE *file,
-                                                      struct dig_error *error),
-                       void *const context)
-{
-    struct dig_error error = { "" };
-    struct dig_out   out;
-    enum dig_status  status = dig_out_open(&out, a->output != NULL ? a->output : "-", &error);
-    if (status == DIG_OK) {
-        status = dig_out_end(&out, write(context, out.file, &error), &error);
-    }
-    return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
-}
-
 int dig_cli_list(const struct dig_arguments *const a)
 {
     struct dig_error      error   = { "" };
@@ -243,52 +228,32 @@ int dig_cli_show(const struct dig_arguments *const a)
     return code;
 }
 
-struct curves_to_write {
-    bool                  varied;
-    struct dig_curve_set *set;
-    struct dig_entry_set *effects;
-};
-
-static enum dig_status write_curves(void *const context, FILE *const file,
-                                    struct dig_error *const error)
-{
-    (void)error;
-    const struct curves_to_write *const curves = context;
-    if (curves->varied) {
-        dig_export_effects(curves->set, curves->effects, file);
-    } else {
-        dig_export_curves(curves->set, file);
-    }
-    return DIG_OK;
-}
-
-static enum dig_status write_runs(void *const store, FILE *const file,
-                                  struct dig_error *const error)
-{
-    return dig_export_runs(store, file, error);
-}
-
+// Goes to stdout, or whole or not at all to -o.
 int dig_cli_export(const struct dig_arguments *const a)
 {
-    struct dig_error error = { "" };
-    if (a->runs) {
-        struct dig_store     *store  = NULL;
-        const enum dig_status status = dig_store_open(a->positional[0], &store, &error);
-        if (status != DIG_OK) {
-            return dig_cli_bad_input(status, &error);
-        }
-        const int code = with_output(a, write_runs, store);
-        dig_store_close(store);
-        return code;
-    }
-    struct curves_to_write curves = { .varied = a->effects };
-    const enum dig_status  status =
-        dig_table_list(a->positional[0], &curves.set, &curves.effects, &error);
+    struct dig_error      error   = { "" };
+    struct dig_store     *store   = NULL;
+    struct dig_curve_set *set     = NULL;
+    struct dig_entry_set *effects = NULL;
+    struct dig_out        out;
+    enum dig_status       status = a->runs ? dig_store_open(a->positional[0], &store, &error)
+                                           : dig_table_list(a->positional[0], &set, &effects, &error);
     if (status != DIG_OK) {
         return dig_cli_bad_input(status, &error);
     }
-    const int code = with_output(a, write_curves, &curves);
-    dig_entry_set_destroy(curves.effects);
-    dig_curve_set_destroy(curves.set);
-    return code;
+    status = dig_out_open(&out, a->output != NULL ? a->output : "-", &error);
+    if (status == DIG_OK) {
+        if (a->runs) {
+            status = dig_export_runs(store, out.file, &error);
+        } else if (a->effects) {
+            dig_export_effects(set, effects, out.file);
+        } else {
+            dig_export_curves(set, out.file);
+        }
+        status = dig_out_end(&out, status, &error);
+    }
+    dig_store_close(store);
+    dig_entry_set_destroy(effects);
+    dig_curve_set_destroy(set);
+    return status == DIG_OK ? EXIT_DONE : dig_cli_work_failed(status, &error);
 }

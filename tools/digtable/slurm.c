@@ -110,8 +110,15 @@ static enum dig_status sbatch(const struct dig_arguments *const  a,
     size_t      n                                   = 2;
     (void)snprintf(name, sizeof name, "--job-name=%s", folder->plan.job);
     (void)snprintf(chdir, sizeof chdir, "--chdir=%s", folder->path);
-    for (size_t i = 0; i < a->slurm_options; i++) {
-        argv[n++] = a->slurm_option[i];
+    const char *const asked[][2] = { { "--time", a->time }, { "--partition", a->partition } };
+    for (size_t i = 0; i < sizeof asked / sizeof asked[0]; i++) {
+        if (asked[i][1] != NULL) {
+            argv[n++] = asked[i][0];
+            argv[n++] = asked[i][1];
+        }
+    }
+    for (size_t i = 0; i < a->sbatch_args; i++) {
+        argv[n++] = a->sbatch_arg[i];
     }
     const char *const ours[] = { name,  chdir,
                                  log,   "--open-mode=truncate",

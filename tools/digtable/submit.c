@@ -203,8 +203,11 @@ int dig_cli_submit(const struct dig_arguments *const a)
     if (a->output == NULL) {
         return dig_cli_bad_usage(a, "submit: %s missing", "-o TABLE.sqlite");
     }
-    if (a->slurm_options > 0 && !a->slurm) {
-        return dig_cli_bad_usage(a, "submit: %s is for --slurm", a->slurm_option[0]);
+    if (!a->slurm && (a->time != NULL || a->partition != NULL || a->sbatch_args > 0)) {
+        return dig_cli_bad_usage(a, "submit: %s is for --slurm",
+                                 a->time != NULL        ? "--time"
+                                 : a->partition != NULL ? "--partition"
+                                                        : a->sbatch_arg[0]);
     }
     struct dig_error        error = { "" };
     struct dig_scene        scene;
