@@ -25,3 +25,13 @@ enum dig_status dig_error_set(struct dig_error *const error, const enum dig_stat
     }
     return status;
 }
+
+enum dig_status dig_error_name(struct dig_error *const error, const char *const name,
+                               const enum dig_status status)
+{
+    if (error == NULL || status == DIG_OK) {
+        return status;
+    }
+    const struct dig_error found = *error;
+    return dig_error_set(error, status, "%s: %s", name, found.text);
+}

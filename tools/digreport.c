@@ -18,12 +18,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What the daemon had: machine, table and, where it ran with one, the model, by which the digs are
-// measured again.
+// What the daemon had, as far as it was given. By the machine as the model corrects it a run's digs
+// are measured again.
 struct loaded {
-    struct dig_machine           machine;
-    struct dig_curve_set        *set;
+    struct dig_machine    machine;
+    struct dig_curve_set *set;
+    double                lambda; // the machine's tooth length over the table's; 0: not known
     struct dig_corrected_machine corrected;
+    struct dig_model             model; // of a shift
 };
 
 // Scale and curves hold for a bucket of the table's shape alone.
@@ -42,46 +44,51 @@ static enum dig_status check_bucket(const struct digreport_options *const option
 static enum dig_status load(const struct digreport_options *const options, struct loaded *const had,
                             struct dig_error *const error)
 {
-    enum dig_status status = dig_machine_read(options->machine, &had->machine, error);
-    if (status == DIG_OK) {
+    enum dig_status status = DIG_OK;
+    if (options->machine != NULL) {
+        status = dig_machine_read(options->machine, &had->machine, error);
+    }
+    if (status == DIG_OK && options->table != NULL) {
         status = dig_table_load(options->table, &had->set, error);
     }
-    if (status == DIG_OK) {
-        status = check_bucket(options, &had->machine, had->set, error);
+    if (status == DIG_OK && had->set != NULL) {
+        status      = check_bucket(options, &had->machine, had->set, error);
+        had->lambda = had->machine.link[DIG_JOINT_BUCKET].length_m / had->set->tooth_m;
     }
     if (status == DIG_OK && options->model != NULL) {
-        status = dig_load_model(options->model, options->table, &had->machine, had->set,
-                                &had->corrected, error);
+        status = options->shift ? dig_model_read(options->model, &had->model, error)
+                                : dig_load_model(options->model, options->table, &had->machine,
+                                                 had->set, &had->corrected, error);
     }
     return digreport_input(status);
 }
 
-static enum dig_status report_runs(const struct digreport_options *const options,
-                                   struct dig_error *const               error)
+// Where a program is to read the result, people read on standard error.
+static FILE *for_people(const struct digreport_options *const o)
 {
-    struct dig_report *all    = NULL;
-    struct loaded      had    = { .set = NULL };
-    enum dig_status    status = load(options, &had, error);
-    if (status != DIG_OK) {
-        goto done;
-    }
+    return o->json != NULL || dig_out_is_stdout(o->csv) || dig_out_is_stdout(o->html) ? stderr
+                                                                                      : stdout;
+}
 
+static enum dig_status report_runs(const struct digreport_options *const options,
+                                   const struct loaded *const had, struct dig_error *const error)
+{
     // Some 40 kB a run: too much to leave to the stack's good will.
-    all = calloc(1, sizeof *all);
+    struct dig_report *const all = calloc(1, sizeof *all);
     if (all == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "out of memory");
-        goto done;
+        return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
+    enum dig_status status = DIG_OK;
+    struct dig_out  out;
     all->title  = options->title != NULL ? options->title : "What the ground resisted with";
     all->table  = options->table;
-    all->lambda = had.machine.link[DIG_JOINT_BUCKET].length_m / had.set->tooth_m;
+    all->lambda = had->lambda;
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
-        status = digreport_run(options, &had.machine, &had.corrected, had.set, options->log[i],
+        status = digreport_run(options, &had->machine, &had->corrected, had->set, options->log[i],
                                &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
     status = digreport_input(status);
-    struct dig_out out;
     if (status == DIG_OK && options->html != NULL) {
         status = dig_out_open(&out, options->html, error);
         if (status == DIG_OK) {
@@ -96,13 +103,9 @@ static enum dig_status report_runs(const struct digreport_options *const options
         }
     }
     if (status == DIG_OK && !options->quiet) {
-        // Where a program is to read the result, people read on standard error.
-        const bool read = options->json != NULL || dig_out_is_stdout(options->html);
-        dig_report_text(all, read ? stderr : stdout);
+        dig_report_text(all, for_people(options));
     }
-done:
     free(all);
-    dig_curve_set_destroy(had.set);
     return status;
 }
 
@@ -140,64 +143,41 @@ static enum dig_status write_shift(const struct digreport_options *const       o
         status = write_file(shift, options->json, digreport_shift_json, error);
     }
     if (status == DIG_OK && !options->quiet) {
-        // Where a program is to read the result, people read on standard error.
-        FILE *const to = options->json != NULL || dig_out_is_stdout(options->csv) ||
-                                 dig_out_is_stdout(options->html)
-                             ? stderr
-                             : stdout;
+        FILE *const to = for_people(options);
         digreport_shift_sentence(shift, to);
         (void)fputs("\n", to);
     }
     return status;
 }
 
-// digreport shift.
 static enum dig_status report_shift(const struct digreport_options *const options,
-                                    struct dig_error *const               error)
+                                    const struct loaded *const had, struct dig_error *const error)
 {
-    struct dig_machine     machine = { .name = "" };
-    struct dig_model       model   = { .effects = 0 };
-    struct dig_curve_set  *set     = NULL;
     struct digreport_shift shift;
     enum dig_status        status = DIG_OK;
-    digreport_shift_begin(&shift, 0.0);
-    if (options->machine != NULL) {
-        status = dig_machine_read(options->machine, &machine, error);
-    }
-    if (status == DIG_OK && options->model != NULL) {
-        status = dig_model_read(options->model, &model, error);
-    }
-    if (status == DIG_OK && options->table != NULL) {
-        status = dig_table_load(options->table, &set, error);
-    }
-    if (status == DIG_OK && set != NULL) {
-        status = check_bucket(options, &machine, set, error);
-        digreport_shift_begin(&shift, machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m);
-    }
+    digreport_shift_begin(&shift, had->lambda);
     for (size_t i = 0; i < options->logs && status == DIG_OK; i++) {
         status = digreport_shift_log(&shift, options->log[i], error);
     }
-    if (status == DIG_OK && set != NULL && shift.scene_hash[0] != '\0' &&
-        strcmp(shift.scene_hash, set->scene_hash) != 0) {
+    if (status == DIG_OK && had->set != NULL && shift.scene_hash[0] != '\0' &&
+        strcmp(shift.scene_hash, had->set->scene_hash) != 0) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s is of scene %.12s…, the daemon of the log predicted from scene "
                                "%.12s…, expected one scene",
-                               options->table, set->scene_hash, shift.scene_hash);
+                               options->table, had->set->scene_hash, shift.scene_hash);
     }
     status = digreport_input(status);
     if (status == DIG_OK) {
         const struct digreport_shift_subject subject = {
             .title   = options->title != NULL ? options->title : "Shift report",
-            .machine = machine.name,
-            .scene   = set != NULL ? set->scene_name : "",
-            .model   = options->model != NULL ? &model : NULL,
+            .machine = had->machine.name,
+            .scene   = had->set != NULL ? had->set->scene_name : "",
+            .model   = options->model != NULL ? &had->model : NULL,
             .logs    = options->logs,
         };
         status = write_shift(options, &shift, &subject, error);
     }
     digreport_shift_finish(&shift);
-    dig_model_finish(&model);
-    dig_curve_set_destroy(set);
     return status;
 }
 
@@ -209,8 +189,14 @@ int main(const int argc, char *argv[])
     if (digreport_parse(argc, argv, &options, &error) != DIG_OK) {
         return digreport_refuse(argv[1], &error);
     }
-    const enum dig_status status =
-        options.shift ? report_shift(&options, &error) : report_runs(&options, &error);
+    struct loaded   had    = { .set = NULL };
+    enum dig_status status = load(&options, &had, &error);
+    if (status == DIG_OK) {
+        status = options.shift ? report_shift(&options, &had, &error)
+                               : report_runs(&options, &had, &error);
+    }
+    dig_model_finish(&had.model);
+    dig_curve_set_destroy(had.set);
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digreport: %s\n", error.text);
     }

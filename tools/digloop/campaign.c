@@ -105,19 +105,16 @@ static enum dig_status measure_force(const struct digloop_job *const            
     const struct dig_curve_set *const set       = job->set;
     struct dig_recording              recording = { 0 };
     struct dig_observed               o         = { .trajectory = 0 };
-    struct dig_error                  why       = { "" };
     enum dig_status                   status =
         tell_recording(job, i, dig_recording_read(r->file, &recording, error), error);
     if (status == DIG_OK) {
         shrink(&recording, scale);
-        status = dig_observe_dig(set, &recording, &o, &why);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", r->file, why.text);
-        } else {
-            m->made = o.made;
-            memcpy(m->deeper, o.deeper, sizeof m->deeper);
-            tell_depth(set, &recording, m);
-        }
+        status = dig_error_name(error, r->file, dig_observe_dig(set, &recording, &o, error));
+    }
+    if (status == DIG_OK) {
+        m->made = o.made;
+        memcpy(m->deeper, o.deeper, sizeof m->deeper);
+        tell_depth(set, &recording, m);
     }
     dig_recording_finish(&recording);
     if (status != DIG_OK) {

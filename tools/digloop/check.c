@@ -43,16 +43,13 @@ enum dig_status digloop_check(const struct digloop_options *const options, bool 
     struct dig_machine           machine;
     struct dig_machine_recording recording = { .rows = 0 };
     struct dig_machine_air_check check     = { .items = 0 };
-    struct dig_error             why       = { "" };
     enum dig_status              status    = dig_machine_read(options->table, &machine, error);
     if (status == DIG_OK) {
         status = digloop_read_samples(options->recording[0], &recording, error);
     }
     if (status == DIG_OK) {
-        status = dig_machine_air_check_run(&machine, &recording, &check, &why);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", options->recording[0], why.text);
-        }
+        status = dig_error_name(error, options->recording[0],
+                                dig_machine_air_check_run(&machine, &recording, &check, error));
     }
     if (status == DIG_OK) {
         const struct dig_check_subject subject = { &machine, options->table, options->recording[0],

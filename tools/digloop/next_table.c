@@ -1,4 +1,4 @@
-#include "tools/digloop/next_table.h"
+// The command that computes a table for the effects a trace found.
 
 #include "core/shell.h"
 #include "core/text.h"
@@ -7,6 +7,7 @@
 #include "files/scene_yaml.h"
 #include "offline_dem/dig/variant.h"
 #include "tables/scene.h"
+#include "tools/digloop/commands.h"
 
 #include <assert.h>
 #include <math.h>

@@ -148,14 +148,13 @@ static enum dig_status read_force(const char *const path, const struct dig_curve
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_error              why = { "" };
     struct dig_observation *const dig = calloc(1, sizeof *dig);
-    status                            = dig != NULL ? observe_force(set, &recording, dig, &why)
-                                                    : dig_error_set(&why, DIG_ENOMEM, "out of memory");
+    status                            = dig != NULL ? observe_force(set, &recording, dig, error)
+                                                    : dig_error_set(error, DIG_ENOMEM, "out of memory");
     dig_recording_finish(&recording);
     if (status != DIG_OK) {
         free(dig);
-        return dig_error_set(error, status, "%s: %s", path, why.text);
+        return dig_error_name(error, path, status);
     }
     *digs = (struct dig_observed_digs){ .digs = 1, .dig = dig, .seen = 1 };
     return DIG_OK;
@@ -175,12 +174,9 @@ static enum dig_status read_samples(const struct digloop_job *const job, const c
     struct dig_machine_recording recording = { .rows = 0 };
     enum dig_status status = digloop_read_machine(path, &machine->machine, &recording, error);
     if (status == DIG_OK) {
-        struct dig_error why = { "" };
-        status = dig_observe_machine(&machine->machine, &machine->corrected, job->set, &recording,
-                                     digs, &why);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", path, why.text);
-        }
+        status = dig_error_name(error, path,
+                                dig_observe_machine(&machine->machine, &machine->corrected,
+                                                    job->set, &recording, digs, error));
     }
     dig_machine_recording_finish(&recording);
     return status;

@@ -8,7 +8,6 @@
 #include "tables/load.h"
 #include "tools/digloop/campaign.h"
 #include "tools/digloop/commands.h"
-#include "tools/digloop/next_table.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -113,12 +112,10 @@ enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_er
     }
     if (status == DIG_OK) {
         const struct dig_trace_settings settings = dig_trace_settings_default();
-        struct dig_error                why      = { "" };
-        status = dig_trace_run(job->set, job->options->table, effects, &settings, campaign.machine,
-                               campaign.digs, campaign.measured, trace, &why);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", job->options->recording[0], why.text);
-        }
+        status                                   = dig_error_name(error, job->options->recording[0],
+                                                                  dig_trace_run(job->set, job->options->table, effects, &settings,
+                                                                                campaign.machine, campaign.digs, campaign.measured,
+                                                                                trace, error));
     }
     if (status == DIG_OK) {
         status = digloop_next_table(job, path, campaign.digs, campaign.measured, trace, error);

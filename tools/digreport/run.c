@@ -75,15 +75,15 @@ static enum dig_status measure(const struct dig_machine *const           machine
 {
     struct dig_machine_recording samples = { 0 };
     struct dig_observed_digs     digs    = { .digs = 0 };
-    struct dig_error             why     = { "" };
     enum dig_status              status  = dig_lcm_log_read(log, &samples, error);
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_observe_machine(machine, corrected, set, &samples, &digs, &why);
+    status = dig_error_name(error, log,
+                            dig_observe_machine(machine, corrected, set, &samples, &digs, error));
     dig_machine_recording_finish(&samples);
     if (status != DIG_OK) {
-        return dig_error_set(error, status, "%s: %s", log, why.text);
+        return status;
     }
     const int want_real   = dig_curve_set_find(set, published->curve.trajectory);
     bool      have_simple = false;

@@ -47,11 +47,7 @@ static int report_dig(void *const context, const double done_s, const double tot
 static enum dig_status name_scene(const char *const path, const enum dig_status status,
                                   struct dig_error *const error)
 {
-    if (status == DIG_OK || status == DIG_EIO || status == DIG_ESTALE) {
-        return status;
-    }
-    const struct dig_error found = *error;
-    return dig_error_set(error, status, "%s: %s", path, found.text);
+    return status == DIG_EIO || status == DIG_ESTALE ? status : dig_error_name(error, path, status);
 }
 
 static enum dig_status get_bed(const struct dig_arguments *const a,
@@ -266,8 +262,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
     status = dig_sweep_run(scene, plan, &engine, &options, store, &state, &error);
     dig_store_close(store);
     if (state.failed > 0) {
-        const struct dig_error found = error;
-        status = dig_error_set(&error, status, "%s: %s", a->positional[0], found.text);
+        status = dig_error_name(&error, a->positional[0], status);
     }
     if (line.tty) {
         dig_progress_end(&line, true);

@@ -1,6 +1,7 @@
 #include "tools/digtable/plan.h"
 
 #include "core/sha256.h"
+#include "files/grid_yaml.h"
 #include "files/scene_yaml.h"
 #include "offline_dem/dig/input_checks.h"
 #include "offline_dem/dig/variant.h"
@@ -103,8 +104,9 @@ static size_t fill_varied(const struct dig_grid *const grid, const size_t plain,
     return n;
 }
 
-struct dig_plan_point *dig_plan_points(const struct dig_grid *const grid, const size_t packings,
-                                       size_t *const count)
+// NULL without memory.
+static struct dig_plan_point *points_of(const struct dig_grid *const grid, const size_t packings,
+                                        size_t *const count)
 {
     size_t product = grid->count[0] > 0 ? 1 : 0;
     size_t times   = grid->effects > 0 ? 0 : 1;
@@ -144,11 +146,10 @@ static enum dig_status check_plain(const char *const             scene_path,
         plain = dig_approach_is_plain(&plan->point[i].approach);
     }
     for (size_t i = 0; i < plan->trajectories && plain; i++) {
-        struct dig_error      why = { "" };
         const enum dig_status status =
-            dig_input_checks_path(scene, &scene->trajectory[plan->trajectory[i]], &why);
+            dig_input_checks_path(scene, &scene->trajectory[plan->trajectory[i]], error);
         if (status != DIG_OK) {
-            return dig_error_set(error, status, "%s: %s", scene_path, why.text);
+            return dig_error_name(error, scene_path, status);
         }
     }
     return DIG_OK;
@@ -173,7 +174,7 @@ enum dig_status dig_plan_read(const char *const scene_path, const char *const gr
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_plan_point *const points = dig_plan_points(&grid, packings, &made.points);
+    struct dig_plan_point *const points = points_of(&grid, packings, &made.points);
     if (points == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the grid", grid_path);
     }
@@ -228,14 +229,13 @@ static enum dig_status check_approach(const struct dig_plan *const       plan,
     enum dig_status status = DIG_OK;
     for (size_t i = 0; status == DIG_OK && i < plan->trajectories; i++) {
         struct dig_trajectory dug;
-        struct dig_error      why = { "" };
         status = dig_approach_make(scene, &scene->trajectory[plan->trajectory[i]], &point->approach,
-                                   &dug, &why);
-        status = status == DIG_OK ? dig_input_checks_path(scene, &dug, &why) : status;
+                                   &dug, error);
+        status = status == DIG_OK ? dig_input_checks_path(scene, &dug, error) : status;
         if (status != DIG_OK) {
-            char how[DIG_APPROACH_TEXT_SIZE];
-            dig_approach_text(&point->approach, how);
-            return dig_error_set(error, status, "grid%s: %.300s", how, why.text);
+            char how[DIG_APPROACH_TEXT_SIZE + 4] = "grid";
+            dig_approach_text(&point->approach, how + 4);
+            return dig_error_name(error, how, status);
         }
     }
     return DIG_OK;

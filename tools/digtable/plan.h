@@ -3,18 +3,14 @@
 #ifndef DIG_TOOLS_DIGTABLE_PLAN_H
 #define DIG_TOOLS_DIGTABLE_PLAN_H
 
-#include "files/grid_yaml.h"
 #include "offline_dem/sweep/sweep.h"
 #include "tables/queue.h"
 
-/// The points of a grid, free() them: every gravel of the axes and every single point, plain and in
-/// every approach, or with each effect at each magnitude. packings overrides the grid's numbers
-/// unless it is 0. NULL without memory.
-struct dig_plan_point *dig_plan_points(const struct dig_grid *grid, size_t packings, size_t *count);
-
-/// Reads a scene and a grid into a plan in one part; plan->point is *point, which the caller frees.
-/// Refuses what dig_scene_read() and dig_grid_read() refuse, a trajectory the scene lacks, and one
-/// that leaves the box. All three are written on success only.
+/// Reads a scene and a grid into a plan in one part; plan->point is *point, which the caller frees:
+/// every gravel of the axes and every single point, plain and in every approach, or with each
+/// effect at each magnitude. packings overrides the grid's numbers unless it is 0. Refuses what
+/// dig_scene_read() and dig_grid_read() refuse, a trajectory the scene lacks, and one that leaves
+/// the box. All three are written on success only.
 DIG_MUST_CHECK enum dig_status dig_plan_read(const char *scene_path, const char *grid_path,
                                              size_t packings, struct dig_scene *scene,
                                              struct dig_plan *plan, struct dig_plan_point **point,
