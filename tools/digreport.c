@@ -89,18 +89,12 @@ static enum dig_status report_runs(const struct digreport_options *const options
         all->runs += status == DIG_OK ? 1 : 0;
     }
     status = digreport_input(status);
-    if (status == DIG_OK && options->html != NULL) {
-        status = dig_out_open(&out, options->html, error);
-        if (status == DIG_OK) {
-            status = dig_out_end(&out, dig_report_html(all, out.file, error), error);
-        }
+    if (dig_out_begin(&out, options->html, &status, error)) {
+        status = dig_out_end(&out, dig_report_html(all, out.file, error), error);
     }
-    if (status == DIG_OK && options->json != NULL) {
-        status = dig_out_open(&out, options->json, error);
-        if (status == DIG_OK) {
-            dig_report_json(all, out.file);
-            status = dig_out_commit(&out, error);
-        }
+    if (dig_out_begin(&out, options->json, &status, error)) {
+        dig_report_json(all, out.file);
+        status = dig_out_commit(&out, error);
     }
     if (status == DIG_OK && !options->quiet) {
         dig_report_text(all, for_people(options));
@@ -109,38 +103,23 @@ static enum dig_status report_runs(const struct digreport_options *const options
     return status;
 }
 
-static enum dig_status write_file(const struct digreport_shift *const shift, const char *const path,
-                                  void (*const put)(const struct digreport_shift *, FILE *),
-                                  struct dig_error *const error)
-{
-    if (path == NULL) {
-        return DIG_OK;
-    }
-    struct dig_out        out;
-    const enum dig_status status = dig_out_open(&out, path, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    put(shift, out.file);
-    return dig_out_commit(&out, error);
-}
-
 static enum dig_status write_shift(const struct digreport_options *const       options,
                                    const struct digreport_shift *const         shift,
                                    const struct digreport_shift_subject *const subject,
                                    struct dig_error *const                     error)
 {
     struct dig_out  out;
-    enum dig_status status =
-        options->html != NULL ? dig_out_open(&out, options->html, error) : DIG_OK;
-    if (status == DIG_OK && options->html != NULL) {
+    enum dig_status status = DIG_OK;
+    if (dig_out_begin(&out, options->html, &status, error)) {
         status = dig_out_end(&out, digreport_shift_html(shift, subject, out.file, error), error);
     }
-    if (status == DIG_OK) {
-        status = write_file(shift, options->csv, digreport_shift_csv, error);
+    if (dig_out_begin(&out, options->csv, &status, error)) {
+        digreport_shift_csv(shift, out.file);
+        status = dig_out_commit(&out, error);
     }
-    if (status == DIG_OK) {
-        status = write_file(shift, options->json, digreport_shift_json, error);
+    if (dig_out_begin(&out, options->json, &status, error)) {
+        digreport_shift_json(shift, out.file);
+        status = dig_out_commit(&out, error);
     }
     if (status == DIG_OK && !options->quiet) {
         FILE *const to = for_people(options);

@@ -130,6 +130,15 @@ enum dig_status dig_out_open(struct dig_out *const out, const char *const path,
     return DIG_OK;
 }
 
+bool dig_out_begin(struct dig_out *const out, const char *const path, enum dig_status *const status,
+                   struct dig_error *const error)
+{
+    assert(out != NULL && status != NULL);
+    const bool asked = *status == DIG_OK && path != NULL;
+    *status          = asked ? dig_out_open(out, path, error) : *status;
+    return asked && *status == DIG_OK;
+}
+
 enum dig_status dig_out_commit(struct dig_out *const out, struct dig_error *const error)
 {
     assert(out != NULL && out->file != NULL);

@@ -38,6 +38,11 @@ DIG_MUST_CHECK enum dig_status dig_out_commit(struct dig_out *out, struct dig_er
 DIG_MUST_CHECK enum dig_status dig_out_end(struct dig_out *out, enum dig_status put_status,
                                            struct dig_error *error);
 
+/// For one of several results: opens path where it is asked for (not NULL) and *status is DIG_OK.
+/// False: nothing is to be written, or *status says why not.
+bool dig_out_begin(struct dig_out *out, const char *path, enum dig_status *status,
+                   struct dig_error *error);
+
 /// True for "-" and /dev/stdout; false for another path and for NULL.
 bool dig_out_is_stdout(const char *path);
 

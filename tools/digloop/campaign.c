@@ -50,8 +50,7 @@ static enum dig_status fill_heads(const struct digloop_job *const  job,
             char yaml[DIG_CAMPAIGN_PATH];
             char known[256] = "";
             for (size_t t = 0; t < set->trajectories; t++) {
-                dig_text_add(sizeof known, known, "%s%s", t > 0 ? ", " : "",
-                             set->trajectory[t].name);
+                dig_text_list(sizeof known, known, set->trajectory[t].name);
             }
             return dig_yaml_refuse(yaml_of(job, yaml), error,
                                    "recordings[%zu].trajectory: \"%s\", expected one of the "

@@ -16,18 +16,12 @@ static enum dig_status write_results(const struct digloop_options *const   optio
 {
     struct dig_out  out;
     enum dig_status status = DIG_OK;
-    if (options->json_out != NULL) {
-        status = dig_out_open(&out, options->json_out, error);
-        if (status == DIG_OK) {
-            dig_machine_check_json(subject, out.file);
-            status = dig_out_commit(&out, error);
-        }
+    if (dig_out_begin(&out, options->json_out, &status, error)) {
+        dig_machine_check_json(subject, out.file);
+        status = dig_out_commit(&out, error);
     }
-    if (status == DIG_OK && options->html != NULL) {
-        status = dig_out_open(&out, options->html, error);
-        if (status == DIG_OK) {
-            status = dig_out_end(&out, dig_machine_check_html(subject, out.file, error), error);
-        }
+    if (dig_out_begin(&out, options->html, &status, error)) {
+        status = dig_out_end(&out, dig_machine_check_html(subject, out.file, error), error);
     }
     const bool on_stdout = dig_out_is_stdout(options->json_out) || dig_out_is_stdout(options->html);
     if (status == DIG_OK && !options->quiet) {

@@ -79,19 +79,17 @@ static bool find_scene(const struct dig_curve_set *const set, const char *const 
 static void add_trajectories(const struct dig_curve_set *const set, const size_t digs,
                              const struct dig_measured measured[], const size_t size, char text[])
 {
-    bool dug[DIG_TRAJECTORY_MAX] = { false };
-    bool first                   = true;
+    bool dug[DIG_TRAJECTORY_MAX]                         = { false };
+    char names[DIG_TRAJECTORY_MAX * (DIG_NAME_SIZE + 2)] = "";
     for (size_t i = 0; i < digs; i++) {
         dug[measured[i].trajectory] = true;
     }
-    dig_text_add(size, text, "trajectories: [");
     for (size_t t = 0; t < set->trajectories; t++) {
         if (dug[t]) {
-            dig_text_add(size, text, "%s%s", first ? "" : ", ", set->trajectory[t].name);
-            first = false;
+            dig_text_list(sizeof names, names, set->trajectory[t].name);
         }
     }
-    dig_text_add(size, text, "]\n");
+    dig_text_add(size, text, "trajectories: [%s]\n", names);
 }
 
 static void add_grid(const struct dig_curve_set *const set, const size_t digs,

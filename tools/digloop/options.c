@@ -195,8 +195,7 @@ enum dig_status digloop_find_trajectory(const struct digloop_job *const job, int
     if (found < 0) {
         char names[256] = "";
         for (size_t t = 0; t < job->set->trajectories; t++) {
-            dig_text_add(sizeof names, names, "%s%s", t > 0 ? ", " : "",
-                         job->set->trajectory[t].name);
+            dig_text_list(sizeof names, names, job->set->trajectory[t].name);
         }
         return dig_error_set(error, DIG_EINVAL,
                              "--trajectory %s: no such trajectory, expected one of %s: %s",

@@ -64,14 +64,11 @@ static enum dig_status write_results(const struct digloop_job *const job, const 
     const struct digloop_options *const options = job->options;
     struct dig_out                      out;
     enum dig_status                     status = DIG_OK;
-    if (options->json_out != NULL) {
-        status = dig_out_open(&out, options->json_out, error);
-        if (status == DIG_OK) {
-            dig_trace_json(trace, out.file);
-            status = dig_out_commit(&out, error);
-        }
+    if (dig_out_begin(&out, options->json_out, &status, error)) {
+        dig_trace_json(trace, out.file);
+        status = dig_out_commit(&out, error);
     }
-    if (status == DIG_OK && options->html != NULL) {
+    if (dig_out_begin(&out, options->html, &status, error)) {
         const struct dig_trace_subject subject = {
             .campaign = options->recording[0],
             .table    = options->table,
@@ -80,10 +77,7 @@ static enum dig_status write_results(const struct digloop_job *const job, const 
             .digs     = campaign->digs,
             .measured = campaign->measured,
         };
-        status = dig_out_open(&out, options->html, error);
-        if (status == DIG_OK) {
-            status = dig_out_end(&out, dig_trace_html(trace, &subject, out.file, error), error);
-        }
+        status = dig_out_end(&out, dig_trace_html(trace, &subject, out.file, error), error);
     }
     if (status == DIG_OK && options->add != NULL) {
         status = digloop_save_model(job, effects, trace, error);
