@@ -44,9 +44,7 @@ static void note_step(const char *const table, const struct dig_curve_set *const
     char text[DIG_TABLE_STEP_TEXT_SIZE];
     dig_table_step_text(&set->step, text);
     if (text[0] != '\0') {
-        (void)fputs("digloop: ", stderr);
-        dig_text_put(stderr, table);
-        (void)fprintf(stderr, ": %s\n", text);
+        dig_text_print(stderr, "digloop: %s: %s\n", table, text);
     }
 }
 
@@ -54,12 +52,11 @@ static void note_step(const char *const table, const struct dig_curve_set *const
 static void note_few_frictions(const char *const table, const struct dig_curve_set *const set)
 {
     if (set->axis_count[DIG_AXIS_FRICTION] == 2) {
-        (void)fputs("digloop: ", stderr);
-        dig_text_put(stderr, table);
-        (void)fputs(
-            ": gravel between its two frictions is guessed, and may be taken for an effect; "
-            "three or more are needed (docs/tables.md, \"How many digs\")\n",
-            stderr);
+        dig_text_print(
+            stderr,
+            "digloop: %s: gravel between its two frictions is guessed, and may be taken "
+            "for an effect; three or more are needed (docs/tables.md, \"How many digs\")\n",
+            table);
     }
 }
 

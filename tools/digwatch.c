@@ -39,17 +39,17 @@ static double now_s(void)
 
 // What is watched, and since when nothing was heard.
 struct watch {
-    struct digwatch_source *source;
-    struct digwatch_model   model;
-    double                  heard_s;
-    struct dig_error        damage; // of a log
+    struct digwatch_source source;
+    struct digwatch_model  model;
+    double                 heard_s;
+    struct dig_error       damage; // of a log
 };
 
 static void read_messages(struct watch *const w)
 {
     const int64_t heard = w->model.messages + w->model.misread;
     // The screen shows the damage; the log has ended there.
-    const enum dig_status status = digwatch_source_read(w->source, now_s(), &w->model, &w->damage);
+    const enum dig_status status = digwatch_source_read(&w->source, now_s(), &w->model, &w->damage);
     (void)status;
     w->heard_s = w->model.messages + w->model.misread > heard ? now_s() : w->heard_s;
 }
@@ -57,9 +57,9 @@ static void read_messages(struct watch *const w)
 // Sleeps until a key, a message or the time due_s; false when the terminal is gone.
 static bool wait_until(const struct watch *const w, const double due_s, const bool keyboard)
 {
-    struct pollfd fd[] = { { .fd = digwatch_source_fd(w->source), .events = POLLIN },
+    struct pollfd fd[] = { { .fd = w->source.fd, .events = POLLIN },
                            { .fd = keyboard ? STDIN_FILENO : -1, .events = POLLIN } };
-    const double  left = fmin(due_s, digwatch_source_due_s(w->source)) - now_s();
+    const double  left = fmin(due_s, w->source.due_s) - now_s();
     const int     n    = poll(fd, 2, left > 0.0 ? (int)ceil(1e3 * fmin(left, 1e3)) : 0);
     return n < 0 ? errno == EINTR : (fd[1].revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
 }
@@ -69,7 +69,7 @@ static void show(const struct watch *const w, const struct digwatch_options *con
 {
     static struct digwatch_grid grid;
     char                        source[160];
-    const bool                  ended = digwatch_source_ended(w->source);
+    const bool                  ended = digwatch_source_ended(&w->source);
     if (options->log != NULL) {
         (void)snprintf(source, sizeof source, "%.100s, %gx", dig_path_last(options->log),
                        options->speed);
@@ -156,8 +156,8 @@ int main(const int argc, char *argv[])
     if (status == DIG_OK) {
         status = options.prometheus != NULL ? write_health(&w, options.prometheus, &error)
                                             : watch(&w, &options, &error);
+        digwatch_source_close(&w.source);
     }
-    digwatch_source_close(w.source);
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digwatch: %s\n", error.text);
     }

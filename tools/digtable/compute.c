@@ -217,9 +217,8 @@ static int report_end(const struct dig_arguments *const a, const struct dig_swee
         return EXIT_DONE;
     }
     char elapsed[32];
-    dig_text_put(stderr, a->output);
-    (void)fprintf(stderr, ": %zu of %zu digs, %s", s->digs_done, s->digs_total,
-                  dig_progress_span(s->elapsed_s, sizeof elapsed, elapsed));
+    dig_text_print(stderr, "%s: %zu of %zu digs, %s", a->output, s->digs_done, s->digs_total,
+                   dig_progress_span(s->elapsed_s, sizeof elapsed, elapsed));
     if (s->digs_done < s->digs_total) {
         (void)fprintf(stderr, "; %zu left%s, the same command goes on with them",
                       s->digs_total - s->digs_done,

@@ -99,10 +99,7 @@ int dig_cli_import(const struct dig_arguments *const a)
         return dig_cli_work_failed(status, &error);
     }
     if (!a->quiet) {
-        dig_text_put(stderr, a->output);
-        (void)fprintf(stderr, ": %zu digs of ", import.digs);
-        dig_text_put(stderr, a->positional[0]);
-        (void)fputs("\n", stderr);
+        dig_text_print(stderr, "%s: %zu digs of %s\n", a->output, import.digs, a->positional[0]);
     }
     return EXIT_DONE;
 }

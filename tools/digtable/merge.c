@@ -14,7 +14,7 @@
 
 // Paths of tables, each malloc'ed.
 struct inputs {
-    size_t count, room;
+    size_t count;
     char **path;
 };
 
@@ -31,16 +31,9 @@ static enum dig_status add(struct inputs *const in, const char *const folder,
                            const char *const name, struct dig_error *const error)
 {
     const size_t size = strlen(folder) + strlen(name) + 2;
-    if (in->count == in->room) {
-        const size_t room = 2 * in->room + 64;
-        char **const more = realloc(in->path, room * sizeof *more);
-        if (more == NULL) {
-            return dig_error_set(error, DIG_ENOMEM, "no memory for %zu tables", room);
-        }
-        in->path = more;
-        in->room = room;
-    }
-    char *const path = malloc(size);
+    char **const more = realloc(in->path, (in->count + 1) * sizeof *more);
+    in->path          = more != NULL ? more : in->path;
+    char *const path  = more != NULL ? malloc(size) : NULL;
     if (path == NULL) {
         return dig_error_set(error, DIG_ENOMEM, "no memory for %zu tables", in->count);
     }

@@ -94,10 +94,11 @@ int dig_cli_check(const struct dig_arguments *const a)
         print_scene_json(&scene);
         (void)puts("}");
     } else {
-        dig_text_put(stdout, a->positional[0]);
-        (void)printf(": sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
-                     "entries with fewer packings",
-                     report.points, report.entries, report.runs, report.holes, report.incomplete);
+        dig_text_print(stdout,
+                       "%s: sound; %zu points, %zu entries, %zu runs; %zu holes in the grid, %zu "
+                       "entries with fewer packings",
+                       a->positional[0], report.points, report.entries, report.runs, report.holes,
+                       report.incomplete);
         if (report.effects > 0) {
             (void)printf("; %zu points with an effect", report.effects);
         }
@@ -124,8 +125,7 @@ int dig_cli_seal(const struct dig_arguments *const a)
         return dig_cli_bad_input(status, &error);
     }
     if (!a->quiet) {
-        dig_text_put(stdout, a->positional[0]);
-        (void)puts(was ? ": was sealed" : ": sealed");
+        dig_text_print(stdout, was ? "%s: was sealed\n" : "%s: sealed\n", a->positional[0]);
     }
     return EXIT_DONE;
 }

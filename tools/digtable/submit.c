@@ -172,8 +172,8 @@ static enum dig_status here(const struct dig_arguments *const a, struct submissi
         status = merge(s, error);
     }
     if (status == DIG_OK && !a->quiet) {
-        dig_text_put(stderr, a->output);
-        (void)fprintf(stderr, ": %zu of %zu shards\n", s->folder.plan.tasks, s->folder.plan.tasks);
+        dig_text_print(stderr, "%s: %zu of %zu shards\n", a->output, s->folder.plan.tasks,
+                       s->folder.plan.tasks);
     }
     return status;
 }

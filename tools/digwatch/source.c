@@ -6,7 +6,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -14,62 +13,34 @@
 #define AT_ONCE  5000 // messages between two looks at the keyboard
 #define PAUSE_us 10000000
 
-struct digwatch_source {
-    int                         fd; // -1: a log
-    struct dig_lcm_log         *log;
-    const struct dig_lcm_event *next; // of the log; NULL: its end
-    double                      speed, due_s;
-    uint8_t                     datagram[DIG_LCM_DATAGRAM_MOST];
-};
-
-// A source that is neither yet.
-static struct digwatch_source *make(void)
-{
-    struct digwatch_source *const s = calloc(1, sizeof *s);
-    if (s != NULL) {
-        s->fd    = -1;
-        s->due_s = INFINITY;
-    }
-    return s;
-}
-
-enum dig_status digwatch_source_listen(const char *const url, struct digwatch_source **const source,
+enum dig_status digwatch_source_listen(const char *const url, struct digwatch_source *const source,
                                        struct dig_error *const error)
 {
     assert(url != NULL && source != NULL);
-    struct digwatch_source *const s = make();
-    if (s == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+    struct digwatch_source made   = { .due_s = INFINITY };
+    const enum dig_status  status = digwatch_multicast_open(url, &made.fd, error);
+    if (status == DIG_OK) {
+        *source = made;
     }
-    const enum dig_status status = digwatch_multicast_open(url, &s->fd, error);
-    if (status != DIG_OK) {
-        digwatch_source_close(s);
-        return status;
-    }
-    *source = s;
-    return DIG_OK;
+    return status;
 }
 
 enum dig_status digwatch_source_play(const char *const path, const double speed,
-                                     struct digwatch_source **const source,
-                                     struct dig_error *const        error)
+                                     struct digwatch_source *const source,
+                                     struct dig_error *const       error)
 {
     assert(path != NULL && speed > 0.0 && source != NULL);
-    struct digwatch_source *const s = make();
-    if (s == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
-    }
-    s->speed               = speed;
-    s->due_s               = 0.0;
-    enum dig_status status = dig_lcm_log_open(path, &s->log, error);
+    struct digwatch_source made   = { .fd = -1, .speed = speed };
+    enum dig_status        status = dig_lcm_log_open(path, &made.log, error);
     if (status == DIG_OK) {
-        status = dig_lcm_log_next(s->log, &s->next, error);
+        status = dig_lcm_log_next(made.log, &made.next, error);
     }
     if (status != DIG_OK) {
-        digwatch_source_close(s);
+        digwatch_source_close(&made);
         return status;
     }
-    *source = s;
+    made.due_s = made.next != NULL ? 0.0 : (double)INFINITY; // 0: at the first reading
+    *source    = made;
     return DIG_OK;
 }
 
@@ -86,17 +57,18 @@ static double pause_s(const int64_t from_us, const int64_t to_us)
 static enum dig_status read_log(struct digwatch_source *const s, const double now_s,
                                 struct digwatch_model *const model, struct dig_error *const error)
 {
-    // The first message is due now.
     s->due_s = s->due_s > 0.0 ? s->due_s : now_s;
     for (int n = 0; n < AT_ONCE && s->next != NULL && s->due_s <= now_s; n++) {
         const int64_t before_us = s->next->time_us;
         digwatch_model_take(model, s->next);
         const enum dig_status status = dig_lcm_log_next(s->log, &s->next, error);
         if (status != DIG_OK) {
-            s->next = NULL;
+            s->next  = NULL;
+            s->due_s = INFINITY;
             return status;
         }
-        s->due_s += s->next != NULL ? pause_s(before_us, s->next->time_us) / s->speed : 0.0;
+        s->due_s +=
+            s->next != NULL ? pause_s(before_us, s->next->time_us) / s->speed : (double)INFINITY;
     }
     return DIG_OK;
 }
@@ -108,13 +80,13 @@ static int64_t wall_us(void)
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-static void read_network(struct digwatch_source *const s, struct digwatch_model *const model)
+static void read_network(const int fd, struct digwatch_model *const model)
 {
+    uint8_t datagram[DIG_LCM_DATAGRAM_MOST];
     ssize_t size;
-    for (int n = 0; n < AT_ONCE && (size = recv(s->fd, s->datagram, sizeof s->datagram, 0)) >= 0;
-         n++) {
+    for (int n = 0; n < AT_ONCE && (size = recv(fd, datagram, sizeof datagram, 0)) >= 0; n++) {
         struct dig_lcm_event event = { .time_us = wall_us() };
-        if (dig_lcm_datagram(s->datagram, (size_t)size, &event) &&
+        if (dig_lcm_datagram(datagram, (size_t)size, &event) &&
             dig_lcm_message_is_known(event.channel)) {
             digwatch_model_take(model, &event);
         }
@@ -129,20 +101,8 @@ enum dig_status digwatch_source_read(struct digwatch_source *const source, const
     if (source->fd < 0) {
         return read_log(source, now_s, model, error);
     }
-    read_network(source, model);
+    read_network(source->fd, model);
     return DIG_OK;
-}
-
-int digwatch_source_fd(const struct digwatch_source *const source)
-{
-    assert(source != NULL);
-    return source->fd;
-}
-
-double digwatch_source_due_s(const struct digwatch_source *const source)
-{
-    assert(source != NULL);
-    return digwatch_source_ended(source) ? (double)INFINITY : source->due_s;
 }
 
 bool digwatch_source_ended(const struct digwatch_source *const source)
@@ -153,11 +113,9 @@ bool digwatch_source_ended(const struct digwatch_source *const source)
 
 void digwatch_source_close(struct digwatch_source *const source)
 {
-    if (source != NULL) {
-        if (source->fd >= 0) {
-            (void)close(source->fd);
-        }
-        dig_lcm_log_close(source->log);
-        free(source);
+    assert(source != NULL);
+    if (source->fd >= 0) {
+        (void)close(source->fd);
     }
+    dig_lcm_log_close(source->log);
 }
