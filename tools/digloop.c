@@ -72,8 +72,9 @@ int main(const int argc, char *argv[])
     const bool            checks = strcmp(options.command, "check") == 0;
     struct dig_curve_set *set    = NULL;
     bool                  wrong  = false;
-    enum dig_status       status = digloop_input(checks ? digloop_check(&options, &wrong, &error)
-                                                        : dig_table_load(options.table, &set, &error));
+    enum dig_status       status =
+        dig_status_of_input(checks ? digloop_check(&options, &wrong, &error)
+                                   : dig_table_load(options.table, &set, &error));
     if (status == DIG_OK && !checks) {
         note_step(options.table, set);
         if (strcmp(options.command, "trace") == 0) {

@@ -60,7 +60,7 @@ static enum dig_status load(const struct digreport_options *const options, struc
                                 : dig_load_model(options->model, options->table, &had->machine,
                                                  had->set, &had->corrected, error);
     }
-    return digreport_input(status);
+    return dig_status_of_input(status);
 }
 
 // Where a program is to read the result, people read on standard error.
@@ -88,7 +88,7 @@ static enum dig_status report_runs(const struct digreport_options *const options
                                &all->run[i], error);
         all->runs += status == DIG_OK ? 1 : 0;
     }
-    status = digreport_input(status);
+    status = dig_status_of_input(status);
     if (dig_out_begin(&out, options->html, &status, error)) {
         status = dig_out_end(&out, dig_report_html(all, out.file, error), error);
     }
@@ -145,7 +145,7 @@ static enum dig_status report_shift(const struct digreport_options *const option
                                "%.12s…, expected one scene",
                                options->table, had->set->scene_hash, shift.scene_hash);
     }
-    status = digreport_input(status);
+    status = dig_status_of_input(status);
     if (status == DIG_OK) {
         const struct digreport_shift_subject subject = {
             .title   = options->title != NULL ? options->title : "Shift report",

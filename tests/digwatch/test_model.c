@@ -137,7 +137,8 @@ TEST_WITH(what_is_no_message_is_counted_and_changes_nothing, fresh, NULL)
         }
     }
     assert_int_equal(model.misread, 4 * 65);
-    assert_false(model.any_estimate || model.any_match || model.any_prediction || model.any_health);
+    assert_false(model.any_estimate || model.match.valid || model.prediction.valid ||
+                 model.any_health);
 }
 
 // Its own lengths are not believed: one byte too many or too few, or any byte of it another.
@@ -190,7 +191,7 @@ TEST_WITH(numbers_that_are_none_and_names_that_are_none_are_not_taken, fresh, NU
 
     digsight_match_t m = match_of((double)NAN);
     say_match(&model, &m);
-    assert_false(model.any_match);
+    assert_false(model.match.valid);
     char command[] = "\033]0;owned\007dig";
     m              = match_of(0.46);
     m.wanted       = command;
@@ -208,8 +209,8 @@ TEST_WITH(numbers_that_are_none_and_names_that_are_none_are_not_taken, fresh, NU
     moment[63]      = 0.0;
     p.from_progress = 1.0;
     say_prediction(&model, &p);
-    assert_false(model.any_prediction);
+    assert_false(model.prediction.valid);
     p.from_progress = 0.5;
     say_prediction(&model, &p);
-    assert_true(model.any_prediction);
+    assert_true(model.prediction.valid);
 }

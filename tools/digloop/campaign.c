@@ -248,7 +248,7 @@ enum dig_status digloop_campaign_load(const struct digloop_job *const job,
     free(from);
     if (status != DIG_OK) {
         digloop_campaign_finish(&loaded);
-        return digloop_input(status);
+        return dig_status_of_input(status);
     }
     *campaign = loaded;
     return DIG_OK;

@@ -33,10 +33,6 @@ digloop_parse(int argc, char *argv[], struct digloop_options *options, struct di
 /// What is wrong with the command line, whose first word is word, to stderr; what to exit with.
 int digloop_refuse(const char *word, const struct dig_error *error);
 
-/// The status of reading an input: a file that is not there or cannot be read is bad input, not a
-/// failure of the work.
-enum dig_status digloop_input(enum dig_status status);
-
 /// What a command goes by: its options, the table, and the machine of --machine.
 struct digloop_job {
     const struct digloop_options *options;

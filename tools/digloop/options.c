@@ -183,11 +183,6 @@ int digloop_refuse(const char *const word, const struct dig_error *const error)
     return 2;
 }
 
-enum dig_status digloop_input(const enum dig_status status)
-{
-    return status == DIG_EIO ? DIG_EINVAL : status;
-}
-
 enum dig_status digloop_find_trajectory(const struct digloop_job *const job, int *const trajectory,
                                         struct dig_error *const error)
 {

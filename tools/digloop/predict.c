@@ -182,7 +182,7 @@ static enum dig_status read_identity(const struct digloop_job *const job,
                                      struct dig_identity *const id, struct dig_error *const error)
 {
     const enum dig_status status =
-        digloop_input(dig_identity_read(job->options->identified, id, error));
+        dig_status_of_input(dig_identity_read(job->options->identified, id, error));
     if (status == DIG_OK && strcmp(id->scene_hash, job->set->scene_hash) != 0) {
         return dig_error_set(error, DIG_EINVAL,
                              "%s was identified with scene %.12s…, %s holds scene %.12s…, expected "

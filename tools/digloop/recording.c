@@ -107,7 +107,7 @@ enum dig_status digloop_load_machine(const struct digloop_job *const job,
     if (status == DIG_OK) {
         *machine = loaded;
     }
-    return digloop_input(status);
+    return dig_status_of_input(status);
 }
 
 // Moment and forces, as a sensor of all three gives them: without a sigma of its own.
@@ -193,7 +193,7 @@ enum dig_status digloop_read_digs(const struct digloop_job *const job, const cha
                                           ? read_force(path, job->set, &read, error)
                                           : read_samples(job, path, &read, error);
     if (status != DIG_OK || read.dig == NULL) {
-        return digloop_input(status);
+        return dig_status_of_input(status);
     }
     size_t kept = 0;
     for (size_t i = 0; i < read.digs; i++) {

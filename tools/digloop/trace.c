@@ -53,7 +53,7 @@ enum dig_status digloop_load_effects(const struct digloop_job *const job,
             return DIG_OK;
         }
     }
-    return digloop_input(dig_effects_load(path, job->set, effects, error));
+    return dig_status_of_input(dig_effects_load(path, job->set, effects, error));
 }
 
 static enum dig_status write_results(const struct digloop_job *const job, const char *const effects,

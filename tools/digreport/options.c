@@ -152,8 +152,3 @@ int digreport_refuse(const char *const word, const struct dig_error *const error
     dig_options_refuse(&program, word, error->text, stderr);
     return 2;
 }
-
-enum dig_status digreport_input(const enum dig_status status)
-{
-    return status == DIG_EIO ? DIG_EINVAL : status;
-}

@@ -29,7 +29,4 @@ digreport_parse(int argc, char *argv[], struct digreport_options *options, struc
 /// What is wrong with the command line, whose first word is word, to stderr; what to exit with.
 int digreport_refuse(const char *word, const struct dig_error *error);
 
-/// A file that cannot be read is bad input: DIG_EIO becomes DIG_EINVAL.
-enum dig_status digreport_input(enum dig_status status);
-
 #endif // DIG_TOOLS_DIGREPORT_OPTIONS_H

@@ -156,8 +156,7 @@ static void take_match(void *const context, const int64_t time_us,
     }
     dig_text_copy(DIGWATCH_TEXT, match.untold, said->untold);
     dig_text_copy(DIGWATCH_TEXT, match.wanted, said->wanted);
-    m->match     = match;
-    m->any_match = true;
+    m->match = match;
 }
 
 static void take_prediction(void *const context, const int64_t time_us,
@@ -172,8 +171,7 @@ static void take_prediction(void *const context, const int64_t time_us,
     if (p.valid && !dig_predicted_curve_take(said, &p.curve)) {
         return;
     }
-    m->prediction     = p;
-    m->any_prediction = true;
+    m->prediction = p;
 }
 
 static void take_health(void *const context, const int64_t time_us,
@@ -244,14 +242,14 @@ struct digwatch_slot digwatch_model_slot(const struct digwatch_model *const mode
 bool digwatch_model_match_holds(const struct digwatch_model *const model)
 {
     assert(model != NULL);
-    return model->any_match && model->match.valid &&
+    return model->match.valid &&
            !has_expired(model, model->match.expires_ns, model->estimate.time_ns);
 }
 
 bool digwatch_model_prediction_holds(const struct digwatch_model *const model)
 {
     assert(model != NULL);
-    return model->any_prediction && model->prediction.valid &&
+    return model->prediction.valid &&
            !has_expired(model, model->prediction.expires_ns, model->estimate.time_ns);
 }
 

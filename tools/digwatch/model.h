@@ -67,7 +67,7 @@ struct digwatch_model {
     int64_t                    messages;   // that were understood
     int64_t                    misread;    // on our channels, and not as this build has them
     int64_t                    misread_us; // when the last of these came
-    bool                       any_estimate, any_match, any_prediction, any_health;
+    bool                       any_estimate, any_health;
     struct digwatch_estimate   estimate;
     struct digwatch_match      match;
     struct digwatch_prediction prediction;

@@ -90,8 +90,6 @@ size_t digwatch_troubles(const struct digwatch_model *const model, const double 
     if (model->any_health) {
         add_health(&list, &model->health);
     }
-    if (model->any_match) {
-        add_ground(&list, model);
-    }
+    add_ground(&list, model);
     return list.n;
 }
