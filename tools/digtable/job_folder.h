@@ -51,6 +51,11 @@ DIG_MUST_CHECK enum dig_status dig_job_folder_plan(const char                  *
 DIG_MUST_CHECK enum dig_status dig_job_folder_open(const char *path, struct dig_job_folder *folder,
                                                    struct dig_error *error);
 
+/// Writes run.sh, which a shell reads, a laptop's as well as Slurm's: anew for each submit, as
+/// programs move; whole or not at all. packings: see dig_job_wanted.
+DIG_MUST_CHECK enum dig_status dig_job_script_write(const struct dig_job_folder *folder,
+                                                    size_t packings, struct dig_error *error);
+
 /// Lets go of the lock; harmless without.
 void dig_job_folder_close(struct dig_job_folder *folder);
 

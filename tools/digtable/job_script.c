@@ -1,7 +1,8 @@
-#include "tools/digtable/job_script.h"
+// run.sh of a job folder.
 
 #include "core/shell.h"
 #include "files/text/whole.h"
+#include "tools/digtable/job_folder.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/job_folder.h"
-#include "tools/digtable/job_script.h"
 #include "tools/digtable/job_state.h"
 #include "tools/digtable/plan.h"
 #include "tools/digtable/slurm.h"
