@@ -79,7 +79,6 @@ static enum dig_status put_joint(FILE *const to, const struct dig_check_curves *
         .title   = title,
         .x_label = "time, s",
         .y_label = "push of the rod, kN",
-        .width   = 480,
         .height  = 300,
         .series  = 2,
         .s       = { { "measured", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, time_s, drive_kN, NULL },

@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-// Around gnuplot's picture, in pixels of the whole one.
-enum { LINE = 20, LEFT = 22, SAMPLE = 28, LETTER = 8, GAP = 16 };
+// In pixels: the whole picture, and what stands around gnuplot's.
+enum { WIDTH = 480, LINE = 20, LEFT = 22, SAMPLE = 28, LETTER = 8, GAP = 16 };
 
 static void put_data(FILE *const to, const size_t index, const struct dig_plot_series *const s)
 {
@@ -27,8 +27,7 @@ static void put_data(FILE *const to, const size_t index, const struct dig_plot_s
 }
 
 // Nothing of this is a caller's text.
-static void put_script(FILE *const to, const struct dig_plot *const plot, const unsigned width,
-                       const unsigned height)
+static void put_script(FILE *const to, const struct dig_plot *const plot, const unsigned height)
 {
     static const char *const how[] = {
         [DIG_PLOT_LINE]   = "using 1:2 with lines lw 2",
@@ -38,10 +37,11 @@ static void put_script(FILE *const to, const struct dig_plot *const plot, const 
         [DIG_PLOT_BAND]   = "using 1:2:3 with filledcurves fs transparent solid 0.25 noborder",
     };
     (void)fprintf(to,
-                  "set terminal svg size %u,%u noenhanced font 'sans-serif,14'\n"
+                  "set terminal svg size %d,%u noenhanced font 'sans-serif,14'\n"
                   "unset key\nset grid lc rgb 0xdddddd\nset border %d lc rgb 0x666666\n"
                   "set tics nomirror\n",
-                  width, height, plot->right_label != NULL ? 11 : 3);
+                  plot->right_label != NULL ? WIDTH - 2 * LEFT : WIDTH - LEFT, height,
+                  plot->right_label != NULL ? 11 : 3);
     if (plot->right_label != NULL) {
         (void)fprintf(to, "set rmargin 7\nset y2tics\nset link y2 via y*%.9g inverse y/%.9g\n",
                       plot->right_factor, plot->right_factor);
@@ -145,8 +145,7 @@ static void put_sample(FILE *const to, const struct dig_plot_series *const s, co
 }
 
 // The key from line y on, as many lines as it takes; to may be NULL, to count them.
-static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const unsigned width,
-                        const unsigned y)
+static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const unsigned y)
 {
     unsigned x     = 3 * LEFT;
     unsigned lines = 0;
@@ -156,7 +155,7 @@ static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const
             continue;
         }
         const unsigned wide = SAMPLE + width_of(s->title);
-        if (lines == 0 || x + wide > width) {
+        if (lines == 0 || x + wide > WIDTH) {
             x = 3 * LEFT;
             lines++;
         }
@@ -170,23 +169,23 @@ static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const
 }
 
 static enum dig_status put_picture(const struct dig_plot *const plot, FILE *const drawing,
-                                   const unsigned width, const unsigned height,
                                    const unsigned above, const unsigned below, FILE *const to,
                                    struct dig_error *const error)
 {
+    const unsigned height = plot->height;
     (void)fprintf(to,
                   "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
-                  "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 %u %u\" "
+                  "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 %d %u\" "
                   "font-family=\"sans-serif\" font-size=\"14\">\n"
-                  "<rect width=\"%u\" height=\"%u\" fill=\"#ffffff\"/>\n",
-                  width, height, width, height);
-    put_text(to, width / 2, LINE - 2, " text-anchor=\"middle\"", plot->title);
+                  "<rect width=\"%d\" height=\"%u\" fill=\"#ffffff\"/>\n",
+                  WIDTH, height, WIDTH, height);
+    put_text(to, WIDTH / 2, LINE - 2, " text-anchor=\"middle\"", plot->title);
     put_turned(to, LINE - 4, height / 2, plot->y_label);
     if (plot->right_label != NULL) {
-        put_turned(to, width - 8, height / 2, plot->right_label);
+        put_turned(to, WIDTH - 8, height / 2, plot->right_label);
     }
-    put_text(to, width / 2, height - below + LINE - 6, " text-anchor=\"middle\"", plot->x_label);
-    (void)put_key(to, plot, width, height - below + 2 * LINE - 2);
+    put_text(to, WIDTH / 2, height - below + LINE - 6, " text-anchor=\"middle\"", plot->x_label);
+    (void)put_key(to, plot, height - below + 2 * LINE - 2);
     (void)fprintf(to, "<g transform=\"translate(%d %u)\" fill=\"none\">\n", LEFT, above);
     const enum dig_status status = copy_drawing(drawing, to, error);
     (void)fputs("</g>\n</svg>\n</figure>\n", to);
@@ -196,11 +195,9 @@ static enum dig_status put_picture(const struct dig_plot *const plot, FILE *cons
 enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const to,
                                 struct dig_error *const error)
 {
-    assert(plot != NULL && to != NULL && plot->series <= DIG_PLOT_SERIES_MAX);
-    const unsigned width  = plot->width == 0 ? 900 : plot->width;
-    const unsigned height = plot->height == 0 ? 420 : plot->height;
-    const unsigned above  = plot->title[0] == '\0' ? 0 : LINE;
-    const unsigned below  = LINE + 4 + LINE * put_key(NULL, plot, width, 0);
+    assert(plot != NULL && to != NULL && plot->series <= DIG_PLOT_SERIES_MAX && plot->height > 0);
+    const unsigned above = plot->title[0] == '\0' ? 0 : LINE;
+    const unsigned below = LINE + 4 + LINE * put_key(NULL, plot, 0);
 
     FILE *const     script  = tmpfile();
     FILE *const     drawing = script != NULL ? tmpfile() : NULL;
@@ -209,15 +206,14 @@ enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const t
         (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
         goto done;
     }
-    put_script(script, plot, width - LEFT - (plot->right_label != NULL ? LEFT : 0),
-               height - above - below);
+    put_script(script, plot, plot->height - above - below);
     if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0) {
         (void)dig_error_set(error, DIG_EIO, "temporary file: %s", strerror(errno));
         goto done;
     }
     status = run_gnuplot(script, drawing, error);
     if (status == DIG_OK) {
-        status = put_picture(plot, drawing, width, height, above, below, to, error);
+        status = put_picture(plot, drawing, above, below, to, error);
     }
 done:
     if (drawing != NULL) {

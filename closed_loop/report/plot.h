@@ -44,12 +44,12 @@ struct dig_plot {
     const char            *title;
     const char            *x_label;
     const char            *y_label;
-    const char            *right_label;   // of a second scale at the right; NULL: none
-    double                 right_factor;  // what y is on it: y times this
-    double                 x_to;          // the axis goes from 0 to here; 0: as the points lie
-    bool                   from_zero;     // the y axis holds 0
-    unsigned               width, height; // 0: 900 by 420; the text is 14 high whatever the size
-    size_t                 series;        // drawn in this order, later ones on top
+    const char            *right_label;  // of a second scale at the right; NULL: none
+    double                 right_factor; // what y is on it: y times this
+    double                 x_to;         // the axis goes from 0 to here; 0: as the points lie
+    bool                   from_zero;    // the y axis holds 0
+    unsigned               height;       // of 480 wide, where text is 14 high
+    size_t                 series;       // drawn in this order, later ones on top
     struct dig_plot_series s[DIG_PLOT_SERIES_MAX];
 };
 

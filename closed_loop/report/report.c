@@ -142,7 +142,6 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
         .right_label  = "at rig scale, N·m",
         .right_factor = 1.0 / kNm,
         .from_zero    = true,
-        .width        = 480,
         .height       = 370,
         .series       = 4,
         .s            = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, x, low, high },

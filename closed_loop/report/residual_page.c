@@ -72,7 +72,6 @@ static enum dig_status put_plot(FILE *const to, const struct dig_trend *const tr
         .title   = "",
         .x_label = x_label,
         .y_label = "residual, % of the dig",
-        .width   = 480,
         .height  = 300,
         .series  = 4,
         .s = { { "1 σ of the mean over digs", DIG_PLOT_BAND, DIG_PLOT_BEFORE, trend->bins, x, low,

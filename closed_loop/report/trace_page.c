@@ -218,7 +218,6 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
         .y_label      = label[scaled ? 1 : 0][channel],
         .right_label  = scaled ? right[channel] : NULL,
         .right_factor = 1.0 / unit,
-        .width        = 480,
         .height       = 370,
         .series       = 3,
         .s = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, p.x, p.low, p.high },

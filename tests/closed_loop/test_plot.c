@@ -17,6 +17,7 @@ static char *svg_of(const char *const text)
         .title   = text,
         .x_label = text,
         .y_label = text,
+        .height  = 370,
         .series  = 1,
         .s       = { { text, DIG_PLOT_LINE, 0x1f5fa8, 2, two, two, NULL } },
     };
@@ -76,6 +77,7 @@ TEST(a_second_scale_stands_at_the_right)
                                .x_label      = "x",
                                .y_label      = "left, kN·m",
                                .right_factor = 0.0625,
+                               .height       = 370,
                                .series       = 1,
                                .s            = { { NULL, DIG_PLOT_LINE, 0, 2, two, two, NULL } } };
     struct dig_error error = { "" };

@@ -97,7 +97,6 @@ static enum dig_status put_picture(const struct digreport_page *const page, FILE
         .y_label   = p->y_label,
         .x_to      = x_to,
         .from_zero = true,
-        .width     = 480,
         .height    = 340,
     };
     if (p->right_label != NULL && shift->lambda > 0.0) {
