@@ -26,12 +26,17 @@ enum dig_status dig_error_set(struct dig_error *const error, const enum dig_stat
     return status;
 }
 
-enum dig_status dig_error_name(struct dig_error *const error, const char *const name,
-                               const enum dig_status status)
+enum dig_status dig_error_name(struct dig_error *const error, const enum dig_status status,
+                               const char *const format, ...)
 {
-    if (error == NULL || status == DIG_OK) {
-        return status;
+    if (error != NULL && status != DIG_OK) {
+        const struct dig_error found = *error;
+        char                   name[sizeof found.text];
+        va_list                args;
+        va_start(args, format);
+        (void)vsnprintf(name, sizeof name, format, args);
+        va_end(args);
+        (void)dig_error_set(error, status, "%s: %s", name, found.text);
     }
-    const struct dig_error found = *error;
-    return dig_error_set(error, status, "%s: %s", name, found.text);
+    return status;
 }

@@ -16,7 +16,9 @@ struct dig_error {
 __attribute__((format(printf, 3, 4))) enum dig_status
 dig_error_set(struct dig_error *error, enum dig_status status, const char *format, ...);
 
-/// Puts "name: " before the text of a status that is a failure: what it is of. Returns status.
-enum dig_status dig_error_name(struct dig_error *error, const char *name, enum dig_status status);
+/// Puts what it is of, as printf() has it, and ": " before the text of a status that is a failure.
+/// Returns status.
+__attribute__((format(printf, 3, 4))) enum dig_status
+dig_error_name(struct dig_error *error, enum dig_status status, const char *format, ...);
 
 #endif // DIG_CORE_ERROR_H

@@ -28,19 +28,6 @@ struct loaded {
     struct dig_model             model; // of a shift
 };
 
-// Scale and curves hold for a bucket of the table's shape alone.
-static enum dig_status check_bucket(const struct digreport_options *const options,
-                                    const struct dig_machine *const       machine,
-                                    const struct dig_curve_set *const     set,
-                                    struct dig_error *const               error)
-{
-    struct dig_error      why    = { "" };
-    const enum dig_status status = dig_bucket_similar(machine, set, &why);
-    return status == DIG_OK ? DIG_OK
-                            : dig_error_set(error, status, "%s does not fit %s: %s",
-                                            options->machine, options->table, why.text);
-}
-
 static enum dig_status load(const struct digreport_options *const options, struct loaded *const had,
                             struct dig_error *const error)
 {
@@ -51,8 +38,10 @@ static enum dig_status load(const struct digreport_options *const options, struc
     if (status == DIG_OK && options->table != NULL) {
         status = dig_table_load(options->table, &had->set, error);
     }
+    // Scale and curves hold for a bucket of the table's shape alone.
     if (status == DIG_OK && had->set != NULL) {
-        status      = check_bucket(options, &had->machine, had->set, error);
+        status      = dig_error_name(error, dig_bucket_similar(&had->machine, had->set, error),
+                                     "%s does not fit %s", options->machine, options->table);
         had->lambda = had->machine.link[DIG_JOINT_BUCKET].length_m / had->set->tooth_m;
     }
     if (status == DIG_OK && options->model != NULL) {

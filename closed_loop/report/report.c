@@ -29,11 +29,7 @@ void dig_report_text(const struct dig_report *const report, FILE *const to)
     assert(report != NULL && to != NULL);
     for (size_t r = 0; r < report->runs; r++) {
         const struct dig_report_run *const run = &report->run[r];
-        (void)fputs("\n  ", to);
-        dig_text_put(to, run->name);
-        (void)fputs(": ", to);
-        dig_text_put(to, run->dig);
-        (void)fputs("\n", to);
+        dig_text_print(to, "\n  %s: %s\n", run->name, run->dig);
         (void)fprintf(to, "  %-18s %9s %11s   %s\n", "", "true", "identified", "90 % interval");
         for (int a = 0; a < DIG_AXES; a++) {
             const int d = dig_report_axis_digits(a);

@@ -76,6 +76,16 @@ TEST(an_error_is_one_line)
     assert_string_equal(error.text, "trigger \"?rm x??return #\" is none");
 }
 
+TEST(what_failed_is_named_before_why_and_nothing_else_is)
+{
+    struct dig_error error = { "row 3" };
+    assert_int_equal(dig_error_name(&error, DIG_OK, "%s", "a.csv"), DIG_OK);
+    assert_string_equal(error.text, "row 3");
+    assert_int_equal(dig_error_name(&error, DIG_EIO, "%s:%d", "a.csv", 7), DIG_EIO);
+    assert_string_equal(error.text, "a.csv:7: row 3");
+    assert_int_equal(dig_error_name(NULL, DIG_ENOMEM, "%s", "a.csv"), DIG_ENOMEM);
+}
+
 TEST(an_error_holds_no_escape_sequence_and_no_half_character)
 {
     struct dig_error error = { "" };

@@ -108,7 +108,7 @@ static enum dig_status measure_force(const struct digloop_job *const            
         tell_recording(job, i, dig_recording_read(r->file, &recording, error), error);
     if (status == DIG_OK) {
         shrink(&recording, scale);
-        status = dig_error_name(error, r->file, dig_observe_dig(set, &recording, &o, error));
+        status = dig_error_name(error, dig_observe_dig(set, &recording, &o, error), "%s", r->file);
     }
     if (status == DIG_OK) {
         m->made = o.made;

@@ -42,8 +42,9 @@ enum dig_status digloop_check(const struct digloop_options *const options, bool 
         status = digloop_read_samples(options->recording[0], &recording, error);
     }
     if (status == DIG_OK) {
-        status = dig_error_name(error, options->recording[0],
-                                dig_machine_air_check_run(&machine, &recording, &check, error));
+        status =
+            dig_error_name(error, dig_machine_air_check_run(&machine, &recording, &check, error),
+                           "%s", options->recording[0]);
     }
     if (status == DIG_OK) {
         const struct dig_check_subject subject = { &machine, options->table, options->recording[0],

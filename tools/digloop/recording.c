@@ -154,7 +154,7 @@ static enum dig_status read_force(const char *const path, const struct dig_curve
     dig_recording_finish(&recording);
     if (status != DIG_OK) {
         free(dig);
-        return dig_error_name(error, path, status);
+        return dig_error_name(error, status, "%s", path);
     }
     *digs = (struct dig_observed_digs){ .digs = 1, .dig = dig, .seen = 1 };
     return DIG_OK;
@@ -174,9 +174,10 @@ static enum dig_status read_samples(const struct digloop_job *const job, const c
     struct dig_machine_recording recording = { .rows = 0 };
     enum dig_status status = digloop_read_machine(path, &machine->machine, &recording, error);
     if (status == DIG_OK) {
-        status = dig_error_name(error, path,
+        status = dig_error_name(error,
                                 dig_observe_machine(&machine->machine, &machine->corrected,
-                                                    job->set, &recording, digs, error));
+                                                    job->set, &recording, digs, error),
+                                "%s", path);
     }
     dig_machine_recording_finish(&recording);
     return status;

@@ -14,17 +14,14 @@ static enum dig_status check_file(const char *const path, const char *const tabl
                                   struct dig_scene *const scene, struct dig_scene *const own,
                                   struct dig_error *const error)
 {
-    struct dig_error why    = { "" };
-    enum dig_status  status = dig_scene_read(path, scene, error);
+    enum dig_status status = dig_scene_read(path, scene, error);
     if (status == DIG_OK) {
         status = dig_table_scene(table, own, error);
     }
-    if (status == DIG_OK && dig_scene_similar(scene, own, &why) != DIG_OK) {
-        status =
-            dig_error_set(error, DIG_EINVAL, "%s: scene \"%s\" is not similar to \"%s\" of %s: %s",
-                          path, scene->name, own->name, table, why.text);
-    }
-    return status;
+    return status == DIG_OK ? dig_error_name(error, dig_scene_similar(scene, own, error),
+                                             "%s: scene \"%s\" is not similar to \"%s\" of %s",
+                                             path, scene->name, own->name, table)
+                            : status;
 }
 
 enum dig_status digloop_check_scene(const struct digloop_job *const job, const char *const path,
@@ -59,9 +56,6 @@ enum dig_status digloop_check_bucket(const struct digloop_job *const job, const 
                                      struct dig_error *const         error)
 {
     assert(job != NULL && file != NULL && machine != NULL);
-    struct dig_error why = { "" };
-    return dig_bucket_similar(machine, job->set, &why) == DIG_OK
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL, "%s does not fit %s: %s", file,
-                               job->options->table, why.text);
+    return dig_error_name(error, dig_bucket_similar(machine, job->set, error), "%s does not fit %s",
+                          file, job->options->table);
 }

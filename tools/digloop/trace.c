@@ -106,10 +106,11 @@ enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_er
     }
     if (status == DIG_OK) {
         const struct dig_trace_settings settings = dig_trace_settings_default();
-        status                                   = dig_error_name(error, job->options->recording[0],
+        status                                   = dig_error_name(error,
                                                                   dig_trace_run(job->set, job->options->table, effects, &settings,
                                                                                 campaign.machine, campaign.digs, campaign.measured,
-                                                                                trace, error));
+                                                                                trace, error),
+                                                                  "%s", job->options->recording[0]);
     }
     if (status == DIG_OK) {
         status = digloop_next_table(job, path, campaign.digs, campaign.measured, trace, error);

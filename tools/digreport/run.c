@@ -79,8 +79,8 @@ static enum dig_status measure(const struct dig_machine *const           machine
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_error_name(error, log,
-                            dig_observe_machine(machine, corrected, set, &samples, &digs, error));
+    status = dig_error_name(
+        error, dig_observe_machine(machine, corrected, set, &samples, &digs, error), "%s", log);
     dig_machine_recording_finish(&samples);
     if (status != DIG_OK) {
         return status;

@@ -43,7 +43,8 @@ static int report_dig(void *const context, const double done_s, const double tot
 static enum dig_status name_scene(const char *const path, const enum dig_status status,
                                   struct dig_error *const error)
 {
-    return status == DIG_EIO || status == DIG_ESTALE ? status : dig_error_name(error, path, status);
+    return status == DIG_EIO || status == DIG_ESTALE ? status
+                                                     : dig_error_name(error, status, "%s", path);
 }
 
 // Refuses a scene whose beds a file cannot hold.

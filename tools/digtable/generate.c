@@ -74,7 +74,7 @@ static int sweep(const struct dig_arguments *const a, const struct dig_scene *co
     status = dig_sweep_run(scene, plan, &engine, &options, store, &state, &error);
     dig_store_close(store);
     if (state.failed > 0) {
-        status = dig_error_name(&error, a->positional[0], status);
+        status = dig_error_name(&error, status, "%s", a->positional[0]);
     }
     if (line.tty) {
         dig_progress_end(&line, true);

@@ -7,7 +7,6 @@
 #include "tools/digtable/commands.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -19,30 +18,17 @@ struct import {
     size_t                      digs;
 };
 
-// why may be the text of the very error.
-static enum dig_status refuse(const struct import *const import, const size_t line,
-                              const enum dig_status status, const char *const why,
-                              struct dig_error *const error)
+static enum dig_status put(const struct import *const          import,
+                           const struct dig_foreign_dig *const dig, struct dig_error *const error)
 {
-    char text[400];
-    (void)snprintf(text, sizeof text, "%.399s", why);
-    return dig_error_set(error, status, "%s:%zu: %s", import->path, line, text);
-}
-
-static enum dig_status store_dig(void *const context, const struct dig_foreign_dig *const dig,
-                                 struct dig_error *const error)
-{
-    struct import *const               import = context;
-    const struct dig_trajectory *const t      = dig_scene_find(import->scene, dig->trajectory);
+    const struct dig_trajectory *const t = dig_scene_find(import->scene, dig->trajectory);
     if (t == NULL) {
-        char why[128];
-        (void)snprintf(why, sizeof why, "trajectory \"%s\", expected one of the scene's",
-                       dig->trajectory);
-        return refuse(import, dig->line, DIG_EINVAL, why, error);
+        return dig_error_set(error, DIG_EINVAL, "trajectory \"%s\", expected one of the scene's",
+                             dig->trajectory);
     }
     struct dig_trajectory dug;
     if (dig_approach_make(import->scene, t, &dig->approach, &dug, error) != DIG_OK) {
-        return refuse(import, dig->line, DIG_EINVAL, error->text, error);
+        return DIG_EINVAL;
     }
     struct dig_run_origin origin = {
         .gravel     = dig->gravel,
@@ -53,12 +39,16 @@ static enum dig_status store_dig(void *const context, const struct dig_foreign_d
     (void)snprintf(origin.engine, sizeof origin.engine, "%.39s", import->map->engine);
     (void)snprintf(origin.version, sizeof origin.version, "%.39s", import->map->version);
     dig_text_utc(time(NULL), sizeof origin.made_utc, origin.made_utc);
-    const enum dig_status status = dig_store_put(import->store, &origin, &dig->recording, error);
-    if (status != DIG_OK) {
-        return refuse(import, dig->line, status, error->text, error);
-    }
-    import->digs++;
-    return DIG_OK;
+    return dig_store_put(import->store, &origin, &dig->recording, error);
+}
+
+static enum dig_status store_dig(void *const context, const struct dig_foreign_dig *const dig,
+                                 struct dig_error *const error)
+{
+    struct import *const  import = context;
+    const enum dig_status status = put(import, dig, error);
+    import->digs += status == DIG_OK ? 1 : 0;
+    return dig_error_name(error, status, "%s:%zu", import->path, dig->line);
 }
 
 int dig_cli_import(const struct dig_arguments *const a)

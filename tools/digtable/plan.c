@@ -149,7 +149,7 @@ static enum dig_status check_plain(const char *const             scene_path,
         const enum dig_status status =
             dig_input_checks_path(scene, &scene->trajectory[plan->trajectory[i]], error);
         if (status != DIG_OK) {
-            return dig_error_name(error, scene_path, status);
+            return dig_error_name(error, status, "%s", scene_path);
         }
     }
     return DIG_OK;
@@ -233,9 +233,9 @@ static enum dig_status check_approach(const struct dig_plan *const       plan,
                                    &dug, error);
         status = status == DIG_OK ? dig_input_checks_path(scene, &dug, error) : status;
         if (status != DIG_OK) {
-            char how[DIG_APPROACH_TEXT_SIZE + 4] = "grid";
-            dig_approach_text(&point->approach, how + 4);
-            return dig_error_name(error, how, status);
+            char how[DIG_APPROACH_TEXT_SIZE];
+            dig_approach_text(&point->approach, how);
+            return dig_error_name(error, status, "grid%s", how);
         }
     }
     return DIG_OK;
