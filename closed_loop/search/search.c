@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // What is significant and that nothing explains, with a name or without, is taken for chance unless
@@ -29,6 +30,17 @@ size_t dig_search_rivals(const struct dig_whitened_digs *const batch,
     return rivals;
 }
 
+// The one of more evidence first.
+static int compare_rivals(const void *const left, const void *const right)
+{
+    const struct dig_rival *const a = left;
+    const struct dig_rival *const b = right;
+    const int by_effect = (int)a->fitted.hypothesis.effect[0] - (int)b->fitted.hypothesis.effect[0];
+    const int by_evidence =
+        (a->log_evidence < b->log_evidence) - (a->log_evidence > b->log_evidence);
+    return by_evidence != 0 ? by_evidence : by_effect;
+}
+
 // Fits everything once, thoroughly, from the middle of the table.
 static void fit_all(struct dig_search_work *const c, struct dig_statistic *const statistic)
 {
@@ -40,8 +52,12 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
                             fitted, statistic);
     c->s->plain = fitted[0];
     for (size_t i = 0; i < c->s->rivals; i++) {
-        c->s->rival[i]        = fitted[1 + i];
-        c->s->log_evidence[i] = dig_search_evidence(c, &fitted[1 + i], 0);
+        c->s->rival[i].fitted       = fitted[1 + i];
+        c->s->rival[i].log_evidence = dig_search_evidence(c, &fitted[1 + i], 0);
+    }
+    qsort(c->s->rival, c->s->rivals, sizeof c->s->rival[0], compare_rivals);
+    for (size_t i = 0; i < c->s->rivals; i++) {
+        c->single[i] = c->s->rival[i].fitted.hypothesis;
     }
     dig_hypothesis_fit(c->batch, &outside, fitted[0].number, DIG_FIT_THOROUGH, &c->s->beyond);
     dig_hypothesis_fit_unlisted(c->batch, &fitted[0], &c->s->nameless);
@@ -53,7 +69,7 @@ static bool is_told_by_order(const struct dig_search_work *const c)
     bool told = false;
     for (size_t i = 0; i < c->s->rivals; i++) {
         const enum dig_effect_id effect = c->single[i].effect[0];
-        told = told || (dig_effect_is_by_dig(effect) && c->s->log_evidence[i] > lead);
+        told = told || (dig_effect_is_by_dig(effect) && c->s->rival[i].log_evidence > lead);
     }
     return told;
 }
@@ -99,8 +115,8 @@ static void decide_whether(struct dig_search_work *const c)
     }
     c->s->significant = c->s->p_complete < c->false_alarm;
     for (size_t i = 0; i < c->s->rivals; i++) {
-        const double left  = dig_null_simulation_left(c->batch, &c->s->rival[i]);
-        c->s->rival_fit[i] = dig_null_simulation_p(&c->plain_null, 0, left);
+        const double left    = dig_null_simulation_left(c->batch, &c->s->rival[i].fitted);
+        c->s->rival[i].p_fit = dig_null_simulation_p(&c->plain_null, 0, left);
     }
 }
 
@@ -132,7 +148,7 @@ static void bootstrap(struct dig_search_work *const c, const size_t times)
         dig_null_simulation_fit(&drawn, &c->s->plain.hypothesis, c->s->rivals, c->single,
                                 c->s->plain.number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < c->s->rivals) {
-            c->s->inclusion[statistic.best] += 1.0 / (double)times;
+            c->s->rival[statistic.best].inclusion += 1.0 / (double)times;
         }
     }
 }
@@ -168,7 +184,7 @@ void dig_search_run(struct dig_whitened_digs *const batch, const double false_al
         search->unlisted = false;
     }
     if (search->chosen.hypothesis.effects == 1) {
-        dig_search_find_set(&c);
+        dig_search_find_alike(&c);
     }
     dig_search_set_probabilities(&c);
 }

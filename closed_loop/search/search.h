@@ -14,6 +14,12 @@
 #include "closed_loop/search/rock.h"
 #include "closed_loop/search/unlisted.h"
 
+/// A single effect, as it competed.
+struct dig_rival {
+    struct dig_fitted fitted;
+    double            log_evidence, p_fit, inclusion; // of struct dig_candidate
+};
+
 struct dig_search {
     bool              significant;
     double            p_complete;
@@ -28,16 +34,12 @@ struct dig_search {
     bool                is_rock; // unlisted, but for a rock where the table has none
     struct dig_rock     rock;
 
-    size_t            rivals; // single effects, as they competed
-    struct dig_fitted rival[DIG_RIVALS_MAX];
-    double            log_evidence[DIG_RIVALS_MAX];
-    double            rival_fit[DIG_RIVALS_MAX]; // p
-    double            inclusion[DIG_RIVALS_MAX];
-    double            probability[DIG_HYPOTHESIS_EFFECTS]; // of chosen's effects
+    size_t           rivals; // best first
+    struct dig_rival rival[DIG_RIVALS_MAX];
+    double           probability[DIG_HYPOTHESIS_EFFECTS]; // of chosen's effects
 
-    // What the digs cannot tell from chosen's effects, each set with the chosen one first.
-    size_t                   sets;
-    struct dig_candidate_set set[DIG_TRACE_SETS_MAX];
+    // What the digs cannot tell from the one effect of chosen, which comes first; empty: nothing.
+    struct dig_candidate_set alike;
 };
 
 /// Lists the single effects of the soil that the digs can tell; how many.

@@ -17,30 +17,21 @@ bool dig_search_is_outside(const struct dig_search_work *const c)
            by_gravel >= dig_search_evidence(c, &c->s->nameless, 0);
 }
 
-static bool is_near_chosen(const struct dig_search_work *const c, const size_t rival)
+void dig_search_find_alike(struct dig_search_work *const c)
 {
-    const double evidence = dig_search_evidence(c, &c->s->chosen, 0);
-    return c->s->log_evidence[rival] > fmax(evidence - DIG_SEARCH_TOLD_APART, 0.0) &&
-           !dig_search_holds(&c->s->chosen.hypothesis, c->single[rival].effect[0]);
-}
-
-void dig_search_find_set(struct dig_search_work *const c)
-{
-    struct dig_candidate_set *const set = &c->s->set[0];
-    set->effects                        = 0;
-    set->effect[set->effects++]         = c->s->chosen.hypothesis.effect[0];
-    bool taken[DIG_RIVALS_MAX];
-    for (size_t i = 0; i < c->s->rivals; i++) {
-        taken[i] = !is_near_chosen(c, i);
-    }
-    for (size_t turn = 0; turn < 2; turn++) {
-        const size_t next = dig_search_best_rival(c->s, taken);
-        if (next < c->s->rivals) {
-            taken[next]                 = true;
-            set->effect[set->effects++] = c->single[next].effect[0];
+    enum { MOST = 3 };
+    struct dig_candidate_set *const alike    = &c->s->alike;
+    const double                    evidence = dig_search_evidence(c, &c->s->chosen, 0);
+    const double                    least    = fmax(evidence - DIG_SEARCH_TOLD_APART, 0.0);
+    alike->effect[0]                         = c->s->chosen.hypothesis.effect[0];
+    alike->effects                           = 1;
+    for (size_t i = 0; i < c->s->rivals && alike->effects < MOST; i++) {
+        const enum dig_effect_id effect = c->single[i].effect[0];
+        if (c->s->rival[i].log_evidence > least && effect != alike->effect[0]) {
+            alike->effect[alike->effects++] = effect;
         }
     }
-    c->s->sets = set->effects > 1 ? 1 : 0;
+    alike->effects = alike->effects > 1 ? alike->effects : 0;
 }
 
 void dig_search_set_probabilities(struct dig_search_work *const c)
@@ -53,7 +44,7 @@ void dig_search_set_probabilities(struct dig_search_work *const c)
         double with    = 1.0;
         double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));
         for (size_t i = 0; i < c->s->rivals; i++) {
-            const double weight = exp(temper * (c->s->log_evidence[i] - evidence));
+            const double weight = exp(temper * (c->s->rival[i].log_evidence - evidence));
             const bool   same   = c->single[i].effect[0] == chosen->hypothesis.effect[e];
             with += same && !single ? weight : 0.0;
             without += same ? 0.0 : weight;

@@ -39,18 +39,15 @@ static size_t list_additions(const struct dig_search_work *const c,
 // The best pair made with one of the best single effects. False when none is better than single.
 static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const pair)
 {
-    bool   tried[DIG_RIVALS_MAX] = { false };
-    bool   any                   = false;
-    double best                  = INFINITY;
-    for (size_t p = 0; p < PARTNERS && p < c->s->rivals; p++) {
-        const size_t first = dig_search_best_rival(c->s, tried);
-        tried[first]       = true;
+    bool   any  = false;
+    double best = INFINITY;
+    for (size_t first = 0; first < PARTNERS && first < c->s->rivals; first++) {
         struct dig_hypothesis added[DIG_RIVALS_MAX];
         struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
         struct dig_statistic  statistic;
         const size_t          n = list_additions(c, &c->single[first], added);
-        dig_null_simulation_fit(c->batch, &c->single[first], n, added, c->s->rival[first].number,
-                                DIG_FIT_BARE, fitted, &statistic);
+        dig_null_simulation_fit(c->batch, &c->single[first], n, added,
+                                c->s->rival[first].fitted.number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {
             best  = fitted[1 + statistic.best].misfit;
             *pair = fitted[1 + statistic.best];
@@ -88,20 +85,20 @@ static bool drifts_otherwise(struct dig_search_work *const c)
 
 // The best single effect again, from where a pair that holds it has led: a pair must not lead for
 // having been fitted better.
-static void fit_again(struct dig_search_work *const c, const size_t best,
-                      const struct dig_fitted *const pair)
+static void fit_again(struct dig_search_work *const c, const struct dig_fitted *const pair)
 {
-    double start[DIG_HYPOTHESIS_NUMBERS];
+    struct dig_rival *const best = &c->s->rival[0];
+    double                  start[DIG_HYPOTHESIS_NUMBERS];
     memcpy(start, pair->number, sizeof start);
     for (size_t e = 0; e < pair->hypothesis.effects; e++) {
-        if (pair->hypothesis.effect[e] == c->single[best].effect[0]) {
+        if (pair->hypothesis.effect[e] == best->fitted.hypothesis.effect[0]) {
             struct dig_fitted again;
             start[DIG_AT_U(0)]        = pair->number[DIG_AT_U(e)];
             start[DIG_AT_CONTRAST(0)] = pair->number[DIG_AT_CONTRAST(e)];
-            dig_hypothesis_fit(c->batch, &c->single[best], start, DIG_FIT_BARE, &again);
-            if (again.misfit < c->s->rival[best].misfit) {
-                c->s->rival[best]        = again;
-                c->s->log_evidence[best] = dig_search_evidence(c, &again, 0);
+            dig_hypothesis_fit(c->batch, &c->single[0], start, DIG_FIT_BARE, &again);
+            if (again.misfit < best->fitted.misfit) {
+                best->fitted       = again;
+                best->log_evidence = dig_search_evidence(c, &again, 0);
             }
         }
     }
@@ -110,14 +107,13 @@ static void fit_again(struct dig_search_work *const c, const size_t best,
 // The pair, where it leads the best single effect as no second effect does by chance (Ville), and
 // predicts digs left out better than that; where no dig can be left out for want of more, a second
 // effect is not confirmed and not named.
-static void choose_pair(struct dig_search_work *const c, const size_t best,
-                        const struct dig_fitted *const pair)
+static void choose_pair(struct dig_search_work *const c, const struct dig_fitted *const pair)
 {
-    const double least = log((double)c->s->rivals / c->false_alarm);
-    const bool   leads = dig_search_evidence(c, pair, 0) > c->s->log_evidence[best] + least;
-    const bool   better =
-        leads && dig_cross_validation_gain(c->batch, &c->s->rival[best], pair) > 0.0;
-    c->s->chosen = better ? *pair : c->s->rival[best];
+    const struct dig_rival *const best  = &c->s->rival[0];
+    const double                  least = log((double)c->s->rivals / c->false_alarm);
+    const bool leads  = dig_search_evidence(c, pair, 0) > best->log_evidence + least;
+    const bool better = leads && dig_cross_validation_gain(c->batch, &best->fitted, pair) > 0.0;
+    c->s->chosen      = better ? *pair : best->fitted;
 }
 
 // The gravel is the one beside something that may be anything: the plain one follows what is not
@@ -167,12 +163,11 @@ void dig_search_which(struct dig_search_work *const c)
         give_up(c);
         return;
     }
-    const size_t best = dig_search_best_rival(c->s, NULL);
-    c->s->chosen      = c->s->rival[best];
+    c->s->chosen = c->s->rival[0].fitted;
     struct dig_fitted pair;
     if (find_pair(c, &pair)) {
-        fit_again(c, best, &pair);
-        choose_pair(c, best, &pair);
+        fit_again(c, &pair);
+        choose_pair(c, &pair);
     }
     const double evidence = dig_search_evidence(c, &c->s->chosen, 0);
     c->s->confirmed       = dig_cross_validation_gain(c->batch, &c->s->plain, &c->s->chosen);

@@ -25,19 +25,7 @@ bool dig_search_holds(const struct dig_hypothesis *const hypothesis,
     return dig_effect_place(effects, hypothesis->effect, effect) < effects;
 }
 
-size_t dig_search_best_rival(const struct dig_search *const s, const bool taken[])
-{
-    size_t best = s->rivals;
-    for (size_t i = 0; i < s->rivals; i++) {
-        if ((taken == NULL || !taken[i]) &&
-            (best == s->rivals || s->log_evidence[i] > s->log_evidence[best])) {
-            best = i;
-        }
-    }
-    return best;
-}
-
 double dig_search_best_evidence(const struct dig_search *const s)
 {
-    return s->rivals > 0 ? fmax(s->log_evidence[dig_search_best_rival(s, NULL)], 0.0) : 0.0;
+    return s->rivals > 0 ? fmax(s->rival[0].log_evidence, 0.0) : 0.0;
 }

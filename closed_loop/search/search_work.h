@@ -14,7 +14,7 @@ struct dig_search_work {
     double                     false_alarm;
     size_t                     draws;
     uint64_t                   seed;
-    struct dig_hypothesis      single[DIG_RIVALS_MAX];
+    struct dig_hypothesis      single[DIG_RIVALS_MAX]; // the rivals'
     struct dig_null_simulation plain_null;
     struct dig_search         *s;
 };
@@ -29,10 +29,6 @@ double dig_search_evidence(const struct dig_search_work *c, const struct dig_fit
 
 bool dig_search_holds(const struct dig_hypothesis *hypothesis, enum dig_effect_id effect);
 
-/// The single effect of the most evidence among those not taken (NULL: of all); the number of
-/// rivals where none is left.
-size_t dig_search_best_rival(const struct dig_search *s, const bool taken[]);
-
 /// The most evidence of a single effect, or 0 when none has any.
 double dig_search_best_evidence(const struct dig_search *s);
 
@@ -43,9 +39,8 @@ void dig_search_which(struct dig_search_work *c);
 /// chosen.
 bool dig_search_is_outside(const struct dig_search_work *c);
 
-/// Fills s->set with the single effects that the digs cannot tell from the one chosen, in the order
-/// of their evidence.
-void dig_search_find_set(struct dig_search_work *c);
+/// Fills s->alike with the two best single effects that the digs cannot tell from the one chosen.
+void dig_search_find_alike(struct dig_search_work *c);
 
 /// Fills s->probability: the weight of each answer among all that were tried, by tempered Bayes.
 void dig_search_set_probabilities(struct dig_search_work *c);

@@ -84,8 +84,8 @@ static const struct dig_fitted *rival_of(const struct dig_search *const s,
                                          const enum dig_effect_id       effect)
 {
     for (size_t i = 0; i < s->rivals; i++) {
-        if (s->rival[i].hypothesis.effect[0] == effect) {
-            return &s->rival[i];
+        if (s->rival[i].fitted.hypothesis.effect[0] == effect) {
+            return &s->rival[i].fitted;
         }
     }
     return NULL;

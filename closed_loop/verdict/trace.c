@@ -230,27 +230,24 @@ static void weigh_soil(const struct dig_trace_work *const w)
     }
 }
 
-static bool is_in_set(const struct dig_search *const s, const enum dig_effect_id effect)
-{
-    const struct dig_candidate_set *const set = &s->set[0];
-    return s->sets > 0 && dig_effect_place(set->effects, set->effect, effect) < set->effects;
-}
-
 // How well what was found is known (covariance: of what is open of the machine), and what cannot be
 // told from it. Of what has lost, nothing is said.
 static void find_intervals(const struct dig_trace_work *const w, double covariance[])
 {
-    struct dig_search *const s    = w->search;
-    const uint64_t           seed = w->settings->seed;
+    struct dig_search *const              s     = w->search;
+    const struct dig_candidate_set *const alike = &s->alike;
+    const uint64_t                        seed  = w->settings->seed;
     dig_posterior_intervals(w->batch, seed, &s->chosen, covariance);
     for (size_t i = 0; i < s->rivals; i++) {
-        if (is_in_set(s, s->rival[i].hypothesis.effect[0])) {
-            dig_posterior_intervals(w->batch, seed, &s->rival[i], NULL);
+        struct dig_fitted *const f      = &s->rival[i].fitted;
+        const enum dig_effect_id effect = f->hypothesis.effect[0];
+        if (dig_effect_place(alike->effects, alike->effect, effect) < alike->effects) {
+            dig_posterior_intervals(w->batch, seed, f, NULL);
             continue;
         }
         for (size_t j = 0; j < DIG_HYPOTHESIS_NUMBERS; j++) {
-            s->rival[i].low[j]  = (double)NAN;
-            s->rival[i].high[j] = (double)NAN;
+            f->low[j]  = (double)NAN;
+            f->high[j] = (double)NAN;
         }
     }
 }

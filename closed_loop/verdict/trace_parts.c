@@ -3,7 +3,6 @@
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/regressors.h"
-#include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/tell_apart.h"
 #include "estimator/effects/effect.h"
 
@@ -241,8 +240,7 @@ static void add_candidate(const struct dig_model_effect *const made,
 
 void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    const struct dig_search *const s                     = w->search;
-    bool                           taken[DIG_RIVALS_MAX] = { false };
+    const struct dig_search *const s = w->search;
     if (s->is_rock && trace->candidates < DIG_TRACE_CANDIDATES_MAX) {
         // It is looked for when all else has failed, and was in no bootstrap.
         const struct dig_model_effect made = dig_trace_rock(&s->rock, 0.0);
@@ -254,16 +252,14 @@ void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_
                                                .seen_in      = DIG_PART_SOIL },
                       trace);
     }
-    for (size_t turn = 0; turn < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX;
-         turn++) {
-        const size_t                   next = dig_search_best_rival(s, taken);
-        const struct dig_fitted *const f    = &s->rival[next];
-        const struct dig_model_effect  made = dig_trace_effect(w->soil, f, 0, 0.0);
-        taken[next]                         = true;
+    for (size_t i = 0; i < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX; i++) {
+        const struct dig_rival *const  rival = &s->rival[i];
+        const struct dig_fitted *const f     = &rival->fitted;
+        const struct dig_model_effect  made  = dig_trace_effect(w->soil, f, 0, 0.0);
         add_candidate(&made,
-                      &(struct dig_candidate){ .log_evidence = s->log_evidence[next],
-                                               .p_fit        = s->rival_fit[next],
-                                               .inclusion    = s->inclusion[next],
+                      &(struct dig_candidate){ .log_evidence = rival->log_evidence,
+                                               .p_fit        = rival->p_fit,
+                                               .inclusion    = rival->inclusion,
                                                .error        = fit_error(w, f),
                                                .seen_in      = dig_trace_seen_in(w, f, 0) },
                       trace);

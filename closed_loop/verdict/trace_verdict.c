@@ -13,8 +13,8 @@ static void fill_sets(const struct dig_search *const s, const struct dig_machine
     for (size_t i = 0; i < air->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
         trace->set[trace->sets++] = air->set[i];
     }
-    for (size_t i = 0; i < s->sets && trace->sets < DIG_TRACE_SETS_MAX; i++) {
-        trace->set[trace->sets++] = s->set[i];
+    if (s->alike.effects > 0 && trace->sets < DIG_TRACE_SETS_MAX) {
+        trace->set[trace->sets++] = s->alike;
     }
 }
 
@@ -36,9 +36,9 @@ void dig_trace_doubt_soil(struct dig_trace_work *const w)
     const struct dig_machine_finding *const air    = w->air;
     struct dig_search *const                search = w->search;
     if (air->unexplained && search->significant && !search->outside) {
-        search->unlisted = true;
-        search->is_rock  = false;
-        search->sets     = 0;
+        search->unlisted      = true;
+        search->is_rock       = false;
+        search->alike.effects = 0;
     }
 }
 

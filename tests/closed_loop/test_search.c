@@ -56,14 +56,7 @@ static struct dig_search search(const struct dig_gravel *const gravel, const siz
 
 static bool in_a_set(const struct dig_search *const s, const enum dig_effect_id effect)
 {
-    for (size_t i = 0; i < s->sets; i++) {
-        for (size_t e = 0; e < s->set[i].effects; e++) {
-            if (s->set[i].effect[e] == effect) {
-                return true;
-            }
-        }
-    }
-    return false;
+    return dig_effect_place(s->alike.effects, s->alike.effect, effect) < s->alike.effects;
 }
 
 // Twelve campaigns without an effect: two false alarms at one in a hundred come once in a hundred
@@ -123,7 +116,7 @@ TEST(an_effect_is_named_and_measured)
         assert_false(s.unlisted);
         assert_int_equal(s.chosen.hypothesis.effects, 1);
         assert_true(s.chosen.hypothesis.effect[0] == effect[i] || in_a_set(&s, effect[i]));
-        assert_true(s.probability[0] > 0.5 || s.sets > 0);
+        assert_true(s.probability[0] > 0.5 || s.alike.effects > 0);
         if (s.chosen.hypothesis.effect[0] == effect[i]) {
             // Friction and density make much the same digs, and what sticks acts by its ratio to
             // the weight: that ratio is what digs tell.
@@ -235,7 +228,7 @@ TEST(no_effect_is_named_that_is_not_decisive)
         const struct dig_search s    = search_digs(&gravel, 0.95, seed);
         double                  best = 0.0;
         for (size_t r = 0; r < s.rivals; r++) {
-            best = fmax(best, s.log_evidence[r]);
+            best = fmax(best, s.rival[r].log_evidence);
         }
         tempted += s.p_complete < 0.95 && best > 0.0 ? 1 : 0;
         assert_true(!s.significant || s.unlisted || s.chosen.hypothesis.effects == 0);
@@ -299,21 +292,21 @@ TEST(a_pair_does_not_lead_for_having_been_fitted_better)
                                            .seed        = 5,
                                            .s           = &s };
     for (size_t i = 0; i < s.rivals; i++) {
-        c.single[i] = s.rival[i].hypothesis;
+        c.single[i] = s.rival[i].fitted.hypothesis;
     }
     c.plain_null =
         dig_null_simulation_draw(&batch, &s.plain, s.rivals, c.single, DRAWS, NULL, &c.seed);
-    const size_t best   = dig_search_best_rival(&s, NULL);
-    const double before = s.log_evidence[best];
-    assert_int_equal(s.rival[best].hypothesis.effect[0], slope);
+    struct dig_rival *const best   = &s.rival[0];
+    const double            before = best->log_evidence;
+    assert_int_equal(best->fitted.hypothesis.effect[0], slope);
     const double short_of = 30.0; // of the misfit
-    s.rival[best].misfit += short_of;
-    s.rival[best].number[DIG_AT_U(0)] *= 0.8;
-    s.log_evidence[best] = dig_search_evidence(&c, &s.rival[best], 1);
-    assert_int_equal(dig_search_best_rival(&s, NULL), best);
-    assert_true(s.log_evidence[best] < before - 2.0 * DIG_SEARCH_TOLD_APART);
+    best->fitted.misfit += short_of;
+    best->fitted.number[DIG_AT_U(0)] *= 0.8;
+    best->log_evidence = dig_search_evidence(&c, &best->fitted, 1);
+    assert_true(best->log_evidence > s.rival[1].log_evidence);
+    assert_true(best->log_evidence < before - 2.0 * DIG_SEARCH_TOLD_APART);
     dig_search_which(&c);
-    assert_close(s.log_evidence[best], before, 1.0);
+    assert_close(best->log_evidence, before, 1.0);
     assert_int_equal(s.chosen.hypothesis.effects, 1);
 }
 

@@ -16,7 +16,7 @@ static struct dig_measured     measured[DIGS];
 
 static void candidate(const enum dig_effect_id effect, const double u)
 {
-    struct dig_fitted *const f = &search.rival[search.rivals++];
+    struct dig_fitted *const f = &search.rival[search.rivals++].fitted;
     *f                         = (struct dig_fitted){ .hypothesis = { 1, { effect }, false } };
     dig_response_surface_place(world.surface, &gravel, f->number);
     f->number[DIG_AT_U(0)]        = u;
