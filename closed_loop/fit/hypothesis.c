@@ -181,16 +181,12 @@ void dig_hypothesis_errors(const struct dig_whitened_digs *const batch,
 }
 
 double dig_hypothesis_squares(const struct dig_whitened_digs *const batch,
-                              const struct dig_fitted *const        fitted,
-                              const struct dig_fitted *const        by)
+                              const struct dig_fitted *const        fitted)
 {
-    struct dig_likelihood own;
-    struct dig_likelihood other;
-    dig_likelihood_init(&own, batch, &fitted->hypothesis);
-    dig_likelihood_init(&other, batch, &by->hypothesis);
-    dig_likelihood_weigh(&other, by->number);
-    dig_likelihood_weigh_as(&own, &other);
-    return dig_likelihood_means(&own, fitted->number);
+    struct dig_likelihood likelihood;
+    dig_likelihood_init(&likelihood, batch, &fitted->hypothesis);
+    dig_likelihood_weigh(&likelihood, fitted->number);
+    return dig_likelihood_means(&likelihood, fitted->number);
 }
 
 void dig_fitted_features(const struct dig_soil *const soil, const struct dig_fitted *const fitted,

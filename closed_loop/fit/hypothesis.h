@@ -58,9 +58,8 @@ void dig_hypothesis_bounds(const struct dig_soil *soil, const struct dig_hypothe
 void dig_hypothesis_errors(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
                            struct dig_common_error error[]);
 
-/// Squares of the means' misfit of a fitted hypothesis (and of z), by the covariance of another
-/// fit.
+/// Squares of the means' misfit of a fitted hypothesis (and of z).
 double dig_hypothesis_squares(const struct dig_whitened_digs *batch,
-                              const struct dig_fitted *fitted, const struct dig_fitted *by);
+                              const struct dig_fitted        *fitted);
 
 #endif // DIG_CLOSED_LOOP_FIT_HYPOTHESIS_H

@@ -233,16 +233,6 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
     weigh_steps(l);
 }
 
-void dig_likelihood_weigh_as(struct dig_likelihood *const       l,
-                             const struct dig_likelihood *const other)
-{
-    assert(l->batch == other->batch);
-    memcpy(l->error, other->error, sizeof l->error);
-    memcpy(l->step, other->step, sizeof l->step);
-    memcpy(l->step_lower, other->step_lower, sizeof l->step_lower);
-    l->step_log_det = other->step_log_det;
-}
-
 // Digs that a hypothesis takes for alike scatter about their mean.
 double dig_likelihood_misfit(const struct dig_likelihood *const l, const double residual[],
                              double *const squares)

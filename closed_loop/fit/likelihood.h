@@ -51,9 +51,6 @@ void dig_likelihood_init(struct dig_likelihood *l, const struct dig_whitened_dig
 /// Takes the covariance at the numbers x for all that follows.
 void dig_likelihood_weigh(struct dig_likelihood *l, const double x[]);
 
-/// Takes the covariance that another likelihood of the batch took.
-void dig_likelihood_weigh_as(struct dig_likelihood *l, const struct dig_likelihood *other);
-
 /// The whitened residuals r of the means, of the digs about them, and z - middle, at x; context:
 /// the likelihood.
 void dig_likelihood_residual(void *context, const double x[], double r[]);
