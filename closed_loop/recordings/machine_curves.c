@@ -53,14 +53,12 @@ static void put_back(const struct dig_machine_dig *const dig, const size_t at, c
     }
 }
 
-static bool tells(const struct reading *const r, const size_t channel)
+static bool tells(const struct reading *const r, const bool forces)
 {
-    return r->solved &&
-           (channel == DIG_CHANNEL_MY_Nm ? r->wrench.moment_valid : r->wrench.force_valid);
+    return r->solved && r->wrench.moment_valid && (!forces || r->wrench.force_valid);
 }
 
-// True where the samples that tell the moment tell the forces, and no others do.
-static bool solve_all(const struct dig_machine *const     machine,
+static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
                       const struct dig_correction *const correction, const bool with_sigma,
                       const struct dig_curve_set *const set, const size_t from, const size_t to,
@@ -68,7 +66,6 @@ static bool solve_all(const struct dig_machine *const     machine,
 {
     struct dig_machine corrected = dig_correction_machine(machine, correction);
     corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
-    bool alike                   = true;
     for (size_t i = from; i < to; i += every) {
         struct reading    r = { .solved = false };
         struct dig_front  front;
@@ -82,10 +79,8 @@ static bool solve_all(const struct dig_machine *const     machine,
         if (r.solved) {
             r.pose = dig_machine_dig_point(set, dig, &front);
         }
-        alike             = alike && tells(&r, DIG_CHANNEL_MY_Nm) == tells(&r, DIG_CHANNEL_FX_N);
         reading[i - from] = r;
     }
-    return alike;
 }
 
 // Where the dig lies by the corrected angles: elsewhere than by those it was found by, where these
@@ -106,7 +101,7 @@ static struct dig_track track_of(const struct dig_curve_set *const   set,
             room[points++] = reading[i - from].pose;
         }
     }
-    return points > 0 ? dig_machine_dig_fit(set, dig, points, room) : dig->track;
+    return points > 0 ? dig_machine_dig_fit(set, dig, 0, points, room) : dig->track;
 }
 
 // A reading in rig scale, all channels.
@@ -133,11 +128,10 @@ static struct dig_window_sample sample_of(const struct dig_machine_dig *const di
     return sample;
 }
 
-// The samples that tell a channel, through the estimator's window as its moment; of those that tell
-// the moment, the forces along where all tell them.
+// The samples that tell the moment, or the forces besides, through the estimator's window.
 static bool observe(const struct dig_curve_set *const set, const struct dig_machine_dig *const dig,
                     const struct dig_track *const track, const size_t from, const size_t to,
-                    const size_t every, const struct reading reading[], const size_t channel,
+                    const size_t every, const struct reading reading[], const bool forces,
                     struct dig_window *const window, struct dig_observation *const observation)
 {
     size_t told = 0;
@@ -148,13 +142,9 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
         const struct reading *const r      = &reading[i - from];
         const bool                  inside = i >= dig->contact && i < dig->end;
         of += inside ? 1 : 0;
-        told += inside && tells(r, channel) ? 1 : 0;
-        if (tells(r, channel)) {
-            struct dig_window_sample sample = sample_of(dig, r, i);
-            sample.has_forces               = sample.has_forces && channel == DIG_CHANNEL_MY_Nm;
-            sample.value[0]                 = sample.value[channel];
-            sample.sigma[0]                 = sample.sigma[channel];
-            sample.slow[0]                  = sample.slow[channel];
+        told += inside && tells(r, forces) ? 1 : 0;
+        if (tells(r, forces)) {
+            const struct dig_window_sample sample = sample_of(dig, r, i);
             dig_window_add(window, &sample);
         }
     }
@@ -237,22 +227,16 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
         free(room);
         return DIG_ENOMEM;
     }
-    const bool alike = solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from,
-                                 to, every, reading);
+    solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from, to, every,
+              reading);
 
     const struct dig_track track = track_of(set, dig, correction, from, to, every, reading, room);
-    // The moment last, whose samples the window keeps.
-    struct dig_observation o = { .first = 0.0 };
-    for (size_t c = DIG_FORCE_CHANNELS - 1; c > 0 && !alike; c--) {
-        const bool is = observe(set, dig, &track, from, to, every, reading, c, window, &o);
-        write_channel(is, o.moment_Nm, o.sigma_Nm, c, measured);
-    }
-    o = (struct dig_observation){ .first = 0.0 };
-    const bool is =
-        observe(set, dig, &track, from, to, every, reading, DIG_CHANNEL_MY_Nm, window, &o);
+    struct dig_observation o     = { .first = 0.0 };
+    const bool is = observe(set, dig, &track, from, to, every, reading, true, window, &o) ||
+                    observe(set, dig, &track, from, to, every, reading, false, window, &o);
     write_channel(is, o.moment_Nm, o.sigma_Nm, DIG_CHANNEL_MY_Nm, measured);
-    for (size_t c = 1; c < DIG_FORCE_CHANNELS && alike; c++) {
-        write_channel(is, o.force_N[c - 1], o.force_sigma_N[c - 1], c, measured);
+    for (size_t c = 1; c < DIG_FORCE_CHANNELS; c++) {
+        write_channel(is && o.forces, o.force_N[c - 1], o.force_sigma_N[c - 1], c, measured);
     }
     measured->first      = o.first;
     measured->last       = o.last;

@@ -150,34 +150,20 @@ static struct found search(const struct dig_curve_set *const set, const struct v
 }
 
 struct dig_track dig_machine_dig_fit(const struct dig_curve_set *const   set,
-                                     const struct dig_machine_dig *const dig, const size_t points,
-                                     const struct dig_path_point point[])
+                                     const struct dig_machine_dig *const dig, const size_t before,
+                                     const size_t points, const struct dig_path_point point[])
 {
-    assert(set != NULL && dig != NULL && points > 0 && point != NULL);
+    assert(set != NULL && dig != NULL && points > before && point != NULL);
     const struct dig_route route = dig_approach_route(set, (size_t)dig->trajectory);
     struct dig_path        path  = { .spacing_m = 0.5 * spacing_share * set->tooth_m };
-    dig_path_add_contact(&path, &point[0]);
-    for (size_t i = 1; i < points; i++) {
-        (void)dig_path_add(&path, &point[i], true);
-    }
-    return dig_track_fit(&route, &path, limit_share * set->tooth_m);
-}
-
-// The shift as the estimator fits it, from the vertices of the dig and some before.
-static struct dig_track fit_track(const struct dig_route *const route,
-                                  const struct vertices *const v, const struct found *const found,
-                                  const double tooth_m)
-{
-    struct dig_path path  = { .spacing_m = 0.5 * spacing_share * tooth_m };
-    const size_t    first = found->start > 8 ? found->start - 8 : 0;
-    for (size_t i = first; i < found->end; i++) {
-        if (i == found->start) {
-            dig_path_add_contact(&path, &v->point[i]);
+    for (size_t i = 0; i < points; i++) {
+        if (i == before) {
+            dig_path_add_contact(&path, &point[i]);
         } else {
-            (void)dig_path_add(&path, &v->point[i], i > found->start);
+            (void)dig_path_add(&path, &point[i], i > before);
         }
     }
-    return dig_track_fit(route, &path, limit_share * tooth_m);
+    return dig_track_fit(&route, &path, limit_share * set->tooth_m);
 }
 
 size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const double time_s)
@@ -311,9 +297,12 @@ static enum dig_status place(const struct dig_machine *const   machine,
     if (found.trajectory < 0) {
         return dig_error_set(error, DIG_ENOMATCH, "no dig along %s found in it", along);
     }
-    const struct dig_route route = dig_approach_route(set, (size_t)found.trajectory);
-    dig->track                   = fit_track(&route, v, &found, set->tooth_m);
-    dig->trajectory              = found.trajectory;
+    const struct dig_route route  = dig_approach_route(set, (size_t)found.trajectory);
+    const size_t           before = found.start < 8 ? found.start : 8;
+    const size_t           first  = found.start - before;
+
+    dig->trajectory = found.trajectory;
+    dig->track      = dig_machine_dig_fit(set, dig, before, found.end - first, &v->point[first]);
     if (!(dig->track.rms_m <= limit_m) || !(found.off_m <= 3.0 * limit_m)) {
         return dig_error_set(
             error, DIG_ENOMATCH,

@@ -66,10 +66,11 @@ struct dig_path_point dig_machine_dig_point(const struct dig_curve_set   *set,
                                             const struct dig_machine_dig *dig,
                                             const struct dig_front       *front);
 
-/// The track of such points, those of the dig in order, as that of its trajectory is fitted.
+/// The track of such points in order, as the estimator fits it along the dig's trajectory: so many
+/// of them before contact, the rest of the dig.
 struct dig_track dig_machine_dig_fit(const struct dig_curve_set   *set,
-                                     const struct dig_machine_dig *dig, size_t points,
-                                     const struct dig_path_point point[]);
+                                     const struct dig_machine_dig *dig, size_t before,
+                                     size_t points, const struct dig_path_point point[]);
 
 /// How curves are measured: with their sigma; without, which is 0, at half the work; or roughly,
 /// from as many samples as a curve has points, for what is a difference of two such, as many times

@@ -134,9 +134,8 @@ TEST(a_dig_with_a_gap_is_seen_but_not_observed)
     dig_machine_recording_finish(&r);
 }
 
-// A sample in the air before the dig that tells no forces, on which no curve depends, makes each
-// channel go its own way.
-TEST(channels_told_together_are_as_one_by_one)
+// Nothing depends on a sample in the air before the dig.
+TEST(samples_without_forces_cost_the_moment_nothing)
 {
     const struct dig_correction  none     = { .delay_s = 0.0 };
     struct dig_machine_recording r        = record();
@@ -158,6 +157,16 @@ TEST(channels_told_together_are_as_one_by_one)
         assert_memory_equal(together.value[c], alone.value[c], sizeof alone.value[c]);
         assert_memory_equal(together.sigma[c], alone.sigma[c], sizeof alone.sigma[c]);
     }
+    // Where too few samples tell the forces the moment is measured without them, by all it has.
+    for (size_t i = dig.contact; i < dig.end; i += 5) {
+        dig.sample[i].valid[DIG_SIGNAL_BOOM_HEAD_Pa] = false;
+    }
+    assert_int_equal(
+        dig_machine_dig_measure(&machine, set, &dig, &none, DIG_MEASURE_WITH_SIGMA, &alone),
+        DIG_OK);
+    assert_true(alone.measured[0] && !alone.measured[1] && !alone.measured[2]);
+    assert_memory_equal(together.value[0], alone.value[0], sizeof alone.value[0]);
+    assert_close(alone.value[1][DIG_CURVE_POINTS / 2], 0.0, 0.0);
     dig_machine_dig_finish(&dig);
     dig_machine_recording_finish(&r);
 }
