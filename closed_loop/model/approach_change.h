@@ -7,11 +7,11 @@
 #include "closed_loop/recordings/measured.h"
 
 /// 1 sigma of the change where the ground lies higher or lower, relative to the plain dig's
-/// amplitude, of a gravel (NULL: mean over the table's): every depth that the table was dug at is
-/// as likely, and the change goes straight with it, as it does to some hundredths of a dig. A dig
-/// whose ground is not known is read over the plain path, and so is the deeper one here. Zeros
-/// where the table has one depth of the trajectory. DIG_ENOMEM. Less than a millisecond; of all
-/// gravels 0.1 ms an entry.
+/// amplitude, of a gravel (where it is not known, NULL, or the table has a hole about it, mean over
+/// the table's): every depth that the table was dug at is as likely, and the change goes straight
+/// with it, as it does to some hundredths of a dig. A dig whose ground is not known is read over
+/// the plain path, and so is the deeper one here. Zeros where the table has one depth of the
+/// trajectory. DIG_ENOMEM. Less than a millisecond a gravel.
 DIG_MUST_CHECK enum dig_status dig_depth_change(const struct dig_curve_set *set, size_t trajectory,
                                                 const struct dig_gravel *gravel,
                                                 double                   change[DIG_FEATURES]);
