@@ -143,14 +143,6 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
     *fitted = best;
 }
 
-void dig_hypothesis_tell_approaches(const struct dig_whitened_digs *const batch,
-                                    struct dig_fitted *const              fitted)
-{
-    for (size_t g = 0; g < batch->groups; g++) {
-        fitted->approaches[g] = dig_common_error_of_approaches(&batch->group[g]);
-    }
-}
-
 void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
                                  const struct dig_fitted *const        beside,
                                  struct dig_fitted *const              fitted)

@@ -13,11 +13,10 @@ struct dig_fitted {
     double                number[DIG_HYPOTHESIS_NUMBERS]; // place; u and contrast of each effect
     double                low[DIG_HYPOTHESIS_NUMBERS];    // 90 % interval: posterior.h fills it
     double                high[DIG_HYPOTHESIS_NUMBERS];
-    double                noise[DIG_TRAJECTORY_MAX];      // of a group's mean beyond 1/n, by group
-    double                approaches[DIG_TRAJECTORY_MAX]; // of that, what other approaches bring in
-    double                misfit;                         // closed_loop/fit/likelihood.h
-    double                squares;                        // of it, what is not a logarithm
-    double                z[DIG_STEPS_MAX];               // of the batch's steps
+    double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
+    double                misfit;                    // closed_loop/fit/likelihood.h
+    double                squares;                   // of it, what is not a logarithm
+    double                z[DIG_STEPS_MAX];          // of the batch's steps
 };
 
 /// Where to start a fit from: the numbers given, or those and four corners of the table as well.
@@ -27,10 +26,6 @@ enum dig_fit_care { DIG_FIT_BARE, DIG_FIT_THOROUGH };
 void dig_hypothesis_fit(const struct dig_whitened_digs *batch,
                         const struct dig_hypothesis *hypothesis, const double start[],
                         enum dig_fit_care care, struct dig_fitted *fitted);
-
-/// Fills a fit's approaches, which fitting leaves at nothing: a build of the covariance a group.
-void dig_hypothesis_tell_approaches(const struct dig_whitened_digs *batch,
-                                    struct dig_fitted              *fitted);
 
 /// Fits something that has no name beside the hypothesis of a fit, of the size that explains most;
 /// the misfit pays for the choice of it.

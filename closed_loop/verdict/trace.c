@@ -280,7 +280,6 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     double covariance[DIG_STEPS_MAX * DIG_STEPS_MAX];
     choose_rate(w);
     dig_search_run(w->batch, level, settings->bootstraps, settings->seed, w->search);
-    dig_hypothesis_tell_approaches(w->batch, &w->search->chosen);
     dig_trace_doubt_soil(w);
     find_intervals(w, covariance);
     status = dig_trace_settle_machine(w, covariance);

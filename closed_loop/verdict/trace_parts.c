@@ -140,7 +140,8 @@ static double noise_of(const struct dig_trace_work *const w, const struct dig_fi
     const size_t trajectory = (size_t)dig->trajectory;
     for (size_t g = 0; g < w->batch->groups; g++) {
         if (w->batch->group[g].trajectory == trajectory) {
-            return fitted->noise[g] - fitted->approaches[g] + dig->added.noise;
+            return fitted->noise[g] - dig_common_error_of_approaches(&w->batch->group[g]) +
+                   dig->added.noise;
         }
     }
     return dig_response_surface_noise(w->surface, trajectory, fitted->number) + dig->added.noise;

@@ -253,6 +253,5 @@ enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
                              "the digs of one trajectory have too little measured in common");
     }
     fit_plain(w, plain);
-    dig_hypothesis_tell_approaches(w->batch, plain);
     return DIG_OK;
 }
