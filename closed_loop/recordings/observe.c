@@ -371,26 +371,3 @@ enum dig_status dig_observe_as_dug(const struct dig_curve_set *const set,
 {
     return observe_any(set, recording, true, observed, error);
 }
-
-enum dig_status dig_observe_recording(const struct dig_curve_set *const set,
-                                      const struct dig_recording *const recording,
-                                      struct dig_observation *const     observation,
-                                      struct dig_error *const           error)
-{
-    assert(observation != NULL);
-    struct dig_observed   o      = { .trajectory = 0 };
-    const enum dig_status status = dig_observe_dig(set, recording, &o, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_observation seen = { .dig_count  = 1,
-                                    .trajectory = o.trajectory,
-                                    .off_path_m = o.off_path_m,
-                                    .first      = o.first,
-                                    .last       = o.last };
-    for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        seen.moment_Nm[k] = o.value[DIG_CHANNEL_MY_Nm][k];
-    }
-    *observation = seen;
-    return DIG_OK;
-}

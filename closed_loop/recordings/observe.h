@@ -1,12 +1,12 @@
-// A force recording as the matcher wants it: moment over path progress, smoothed, on the table's
-// grid.
+// A force recording as the matcher wants it: moment and forces over path progress, smoothed, on the
+// table's grid.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_H
 #define DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_H
 
+#include "core/approach.h"
 #include "core/curve.h"
 #include "core/error.h"
-#include "core/observation.h"
 #include "core/recording.h"
 
 #include <stdbool.h>
@@ -32,9 +32,15 @@ struct dig_observed {
                 [DIG_CURVE_POINTS]; // of that, by the rows: recordings/reading_noise.h
 };
 
-/// As dig_observe_recording(), all channels. The bucket may be turned against the trajectory as far
-/// as the table was dug so. A force that a row lacks is not measured at all;
-/// DIG_EINVAL when the moment is.
+/// Finds the trajectory the recording followed, at its own pace and at least six tenths of it, and
+/// samples its channels, smoothed over the path that the table's dig makes in +-set->smooth_half_s,
+/// at DIG_CURVE_POINTS of its path progress. The recording must be of the table's size (rig scale);
+/// where it stands in space does not matter. The bucket may be turned against the trajectory as far
+/// as the table was dug so. A force that rows lack for longer than is smoothed is not measured.
+///
+/// DIG_ENOMATCH: no trajectory of the set within DIG_OBSERVE_PATH_LIMIT; *error names the nearest
+/// and its distance. DIG_EINVAL: a recording that does not move, or lacks the moment. DIG_ENOMEM.
+/// O(rows).
 DIG_MUST_CHECK enum dig_status dig_observe_dig(const struct dig_curve_set *set,
                                                const struct dig_recording *recording,
                                                struct dig_observed        *observed,
@@ -48,17 +54,5 @@ DIG_MUST_CHECK enum dig_status dig_observe_as_dug(const struct dig_curve_set *se
                                                   const struct dig_recording *recording,
                                                   struct dig_observed        *observed,
                                                   struct dig_error           *error);
-
-/// Finds the trajectory the recording followed, at its own pace and at least six tenths of it, and
-/// samples the moment, smoothed over the path that the table's dig makes in +-set->smooth_half_s,
-/// at DIG_CURVE_POINTS of its path progress. The recording must be of the table's size (rig scale);
-/// where it stands in space does not matter.
-///
-/// DIG_ENOMATCH: no trajectory of the set within DIG_OBSERVE_PATH_LIMIT; *error names the nearest
-/// and its distance. DIG_EINVAL: a recording that does not move. DIG_ENOMEM. O(rows).
-DIG_MUST_CHECK enum dig_status dig_observe_recording(const struct dig_curve_set *set,
-                                                     const struct dig_recording *recording,
-                                                     struct dig_observation     *observation,
-                                                     struct dig_error           *error);
 
 #endif // DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_H

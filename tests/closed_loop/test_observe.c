@@ -71,9 +71,9 @@ TEST(pace_and_place_do_not_matter)
     const double               blur_most = 0.02; // of +-0.16 s on a wave of 7.9 s and its ends
     for (int t = 0; t < 2; t++) {
         for (size_t p = 0; p < 3; p++) {
-            struct dig_recording   r = drive(&set.trajectory[t], paces[p], slow_wave);
-            struct dig_observation o;
-            assert_int_equal(dig_observe_recording(&set, &r, &o, NULL), DIG_OK);
+            struct dig_recording r = drive(&set.trajectory[t], paces[p], slow_wave);
+            struct dig_observed  o;
+            assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
             assert_int_equal(o.trajectory, t);
             assert_true(o.off_path_m < 1e-4);
             // Within a smoothing window of the ends the mean is one-sided and says something else.
@@ -82,7 +82,7 @@ TEST(pace_and_place_do_not_matter)
                 const double time_s = dig_trajectory_time_s(&set.trajectory[t], set.tooth_m,
                                                             k / (DIG_CURVE_POINTS - 1.0));
                 if (time_s > 0.3 && time_s < end_s - 0.3) {
-                    assert_close(o.moment_Nm[k], slow_wave(time_s), blur_most);
+                    assert_close(o.value[DIG_CHANNEL_MY_Nm][k], slow_wave(time_s), blur_most);
                 }
             }
             dig_recording_finish(&r);
@@ -214,15 +214,15 @@ TEST(a_path_of_another_kind_is_refused_and_writes_nothing)
     const struct dig_trajectory up  = { "up", 0.0, 0.0, 0.0, 1, { { "up", 2.0, 0.0, 0.1, 0.0 } } };
     const struct dig_trajectory still = { "still", 0.0, 0.0,
                                           0.0,     1,   { { "still", 2.0, 0.0, 0.0, 0.0 } } };
-    struct dig_observation      o     = { .dig_count = 42 };
+    struct dig_observed         o     = { .trajectory = 42 };
     struct dig_error            e     = { "" };
     struct dig_recording        r1 = drive(&up, 1.0, slow_wave), r2 = drive(&still, 1.0, slow_wave);
-    assert_int_equal(dig_observe_recording(&set, &r1, &o, &e), DIG_ENOMATCH);
+    assert_int_equal(dig_observe_dig(&set, &r1, &o, &e), DIG_ENOMATCH);
     assert_non_null(strstr(e.text, "expected"));
-    assert_int_equal(dig_observe_recording(&set, &r2, &o, &e), DIG_EINVAL);
+    assert_int_equal(dig_observe_dig(&set, &r2, &o, &e), DIG_EINVAL);
     r2.rows = 1;
-    assert_int_equal(dig_observe_recording(&set, &r2, &o, &e), DIG_EINVAL);
-    assert_int_equal(o.dig_count, 42);
+    assert_int_equal(dig_observe_dig(&set, &r2, &o, &e), DIG_EINVAL);
+    assert_int_equal(o.trajectory, 42);
     dig_recording_finish(&r1);
     dig_recording_finish(&r2);
 }

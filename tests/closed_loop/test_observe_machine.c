@@ -20,10 +20,10 @@ static const char *const file[DIGS] = {
     "tests/data/reference/mu0.5_mur0.5_rho2500__actual.csv",
 };
 
-static struct dig_machine     machine;
-static struct dig_rig_track   track;
-static struct dig_curve_set  *set;
-static struct dig_observation direct[DIGS]; // of the force recordings
+static struct dig_machine    machine;
+static struct dig_rig_track  track;
+static struct dig_curve_set *set;
+static struct dig_observed   direct[DIGS]; // of the force recordings
 
 static int build(void **state)
 {
@@ -35,7 +35,7 @@ static int build(void **state)
     machine                         = read_machine("zx200_trench");
     for (int d = 0; d < DIGS; d++) {
         recording[d] = read_recording(file[d]);
-        assert_ok(dig_observe_recording(set, &recording[d], &direct[d], &error), error);
+        assert_ok(dig_observe_dig(set, &recording[d], &direct[d], &error), error);
     }
     struct dig_rig_track_options how = dig_rig_track_options_default();
     how.placed                       = true; // where digrig would put it: the search takes seconds
@@ -69,15 +69,15 @@ static struct dig_machine_recording record(void)
 }
 
 // Norm of the difference over that of the moment, where both were measured.
-static double apart(const struct dig_observation *const a, const struct dig_observation *const b)
+static double apart(const struct dig_observation *const a, const struct dig_observed *const b)
 {
     double miss  = 0.0;
     double whole = 0.0;
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = k / (DIG_CURVE_POINTS - 1.0);
         if (at >= fmax(a->first, b->first) && at <= fmin(a->last, b->last)) {
-            miss += pow(a->moment_Nm[k] - b->moment_Nm[k], 2.0);
-            whole += pow(b->moment_Nm[k], 2.0);
+            miss += pow(a->moment_Nm[k] - b->value[DIG_CHANNEL_MY_Nm][k], 2.0);
+            whole += pow(b->value[DIG_CHANNEL_MY_Nm][k], 2.0);
         }
     }
     return sqrt(miss / whole);

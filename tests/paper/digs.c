@@ -97,11 +97,11 @@ static void name_recording(const char *const file, const struct dig_curve_set *c
 static enum dig_status take_recording(const char *const file, struct paper_table *const table,
                                       struct dig_error *const error)
 {
-    struct dig_recording   recording = { 0 };
-    struct dig_observation seen;
-    enum dig_status        status = dig_recording_read(file, &recording, error);
+    struct dig_recording recording = { 0 };
+    struct dig_observed  seen;
+    enum dig_status      status = dig_recording_read(file, &recording, error);
     if (status == DIG_OK) {
-        status = dig_observe_recording(table->set, &recording, &seen, error);
+        status = dig_observe_dig(table->set, &recording, &seen, error);
         dig_recording_finish(&recording);
     }
     if (status != DIG_OK) {
@@ -110,7 +110,7 @@ static enum dig_status take_recording(const char *const file, struct paper_table
     struct paper_recording *const r = &table->recording[table->recordings++];
     name_recording(file, table->set, r);
     r->trajectory = (size_t)seen.trajectory;
-    memcpy(r->moment_Nm, seen.moment_Nm, sizeof r->moment_Nm);
+    memcpy(r->moment_Nm, seen.value[DIG_CHANNEL_MY_Nm], sizeof r->moment_Nm);
     return DIG_OK;
 }
 

@@ -120,11 +120,11 @@ static enum dig_status add_recordings(const struct digreport_options *const opti
         }
     }
     for (size_t r = 0; r < options->recordings; r++) {
-        struct dig_recording   recording = { 0 };
-        struct dig_observation fed;
-        enum dig_status status = dig_recording_read(options->recording[r], &recording, error);
+        struct dig_recording recording = { 0 };
+        struct dig_observed  fed;
+        enum dig_status      status = dig_recording_read(options->recording[r], &recording, error);
         if (status == DIG_OK) {
-            status = dig_observe_recording(set, &recording, &fed, error);
+            status = dig_observe_dig(set, &recording, &fed, error);
         }
         dig_recording_finish(&recording);
         if (status != DIG_OK) {
@@ -132,7 +132,8 @@ static enum dig_status add_recordings(const struct digreport_options *const opti
         }
         for (size_t d = 0; d < 2; d++) {
             if (strcmp(digs[d]->trajectory, set->trajectory[fed.trajectory].name) == 0) {
-                memcpy(digs[d]->recording_Nm, fed.moment_Nm, sizeof fed.moment_Nm);
+                memcpy(digs[d]->recording_Nm, fed.value[DIG_CHANNEL_MY_Nm],
+                       sizeof digs[d]->recording_Nm);
             }
         }
     }
