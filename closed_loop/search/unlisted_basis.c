@@ -1,14 +1,10 @@
 #include "closed_loop/search/unlisted_basis.h"
 
 #include "closed_loop/recordings/regressors.h"
-#include "core/units.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-static const double least_pitch_rad = 1.0 * DIG_RAD_PER_DEG;
-static const double least_pace      = 0.1; // relative
 
 const char *dig_basis_name(const enum dig_basis basis)
 {
@@ -18,57 +14,6 @@ const char *dig_basis_name(const enum dig_basis basis)
     };
     assert((size_t)basis < DIG_BASES);
     return name[basis];
-}
-
-// What of a batch's digs differs.
-struct ranges {
-    unsigned least_pass, most_pass;
-    bool     pitch_known;
-    double   least_pitch_rad, most_pitch_rad, least_pace, most_pace;
-};
-
-static struct ranges ranges_of(const struct dig_whitened_digs *const batch)
-{
-    const struct dig_measured *const first = &batch->measured[batch->dig[0].measured];
-
-    struct ranges r = { first->pass,      first->pass, true,       first->pitch_rad,
-                        first->pitch_rad, first->pace, first->pace };
-    for (size_t i = 0; i < batch->digs; i++) {
-        const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
-        r.least_pass                         = dig->pass < r.least_pass ? dig->pass : r.least_pass;
-        r.most_pass                          = dig->pass > r.most_pass ? dig->pass : r.most_pass;
-        r.pitch_known                        = r.pitch_known && dig->pitch_known;
-        r.least_pitch_rad                    = fmin(r.least_pitch_rad, dig->pitch_rad);
-        r.most_pitch_rad                     = fmax(r.most_pitch_rad, dig->pitch_rad);
-        r.least_pace                         = fmin(r.least_pace, dig->pace);
-        r.most_pace                          = fmax(r.most_pace, dig->pace);
-    }
-    return r;
-}
-
-size_t dig_basis_told(const struct dig_whitened_digs *const batch, enum dig_basis told[DIG_BASES])
-{
-    assert(batch != NULL && batch->digs > 0 && told != NULL);
-    const struct ranges r = ranges_of(batch);
-    size_t              n = 0;
-    for (int b = 0; b < DIG_BASES; b++) {
-        const bool is_told =
-            b == DIG_BASIS_PASS ? r.most_pass > r.least_pass
-            : b == DIG_BASIS_PITCH
-                ? r.pitch_known && r.most_pitch_rad - r.least_pitch_rad >= least_pitch_rad
-                : true;
-        if (is_told) {
-            told[n++] = (enum dig_basis)b;
-        }
-    }
-    return n;
-}
-
-bool dig_basis_paces_differ(const struct dig_whitened_digs *const batch)
-{
-    assert(batch != NULL && batch->digs > 0);
-    const struct ranges r = ranges_of(batch);
-    return r.most_pace > (1.0 + least_pace) * r.least_pace;
 }
 
 void dig_basis_along(const struct dig_curve_set *const set, const struct dig_measured *const dig,

@@ -4,7 +4,6 @@
 #ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_BASIS_H
 #define DIG_CLOSED_LOOP_SEARCH_UNLISTED_BASIS_H
 
-#include "closed_loop/fit/whitened_digs.h"
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/recordings/measured.h"
 
@@ -26,13 +25,6 @@ enum dig_basis {
 
 /// "amplitude", "depth", …, for people.
 const char *dig_basis_name(enum dig_basis basis);
-
-/// Which of them a batch's digs can tell: the trajectory's always, the pass where passes differ,
-/// pitch where all have it and it differs by a degree. Writes them in order; how many.
-size_t dig_basis_told(const struct dig_whitened_digs *batch, enum dig_basis told[DIG_BASES]);
-
-/// True where digs differ by a tenth in pace: less than that is how a machine keeps its pace.
-bool dig_basis_paces_differ(const struct dig_whitened_digs *batch);
 
 /// The functions along one dig, means over the bins of its features.
 void dig_basis_along(const struct dig_curve_set *set, const struct dig_measured *dig,

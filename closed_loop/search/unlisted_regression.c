@@ -126,8 +126,7 @@ static double explain(const struct regression *const r, const size_t functions,
 }
 
 // The best functions of so many, one after the other.
-static struct dig_regressed choose(const struct regression *const r, const size_t candidates,
-                                   const enum dig_basis candidate[])
+static struct dig_regressed choose(const struct regression *const r, const size_t candidates)
 {
     const double         price                         = log((double)candidates / COMMON);
     struct dig_regressed found                         = { .log_evidence = 0.0 };
@@ -139,14 +138,14 @@ static struct dig_regressed choose(const struct regression *const r, const size_
         enum dig_basis best = DIG_BASIS_AMPLITUDE;
         for (size_t i = 0; i < candidates; i++) {
             size_t columns;
-            chosen[found.functions] = candidate[i];
+            chosen[found.functions] = (enum dig_basis)i;
             const double taken      = explain(r, found.functions + 1, chosen, &columns);
             const double evidence   = 0.5 * (taken - alone) -
                                     0.5 * (double)(columns - of_gravel) * log((double)r->rows) -
                                     (double)(found.functions + 1) * price;
             if (evidence > found.log_evidence) {
                 found.log_evidence = evidence;
-                best               = candidate[i];
+                best               = (enum dig_basis)i;
                 better             = true;
             }
         }
@@ -168,15 +167,18 @@ struct told {
 static void tell(const struct dig_whitened_digs *const batch, const bool each,
                  struct told *const told)
 {
-    const bool paced = each && dig_basis_paces_differ(batch);
+    bool pitched = each;
+    for (size_t i = 0; i < batch->digs; i++) {
+        pitched = pitched && batch->measured[batch->dig[i].measured].pitch_known;
+    }
     memset(told->mean, 0, sizeof told->mean);
     for (size_t i = 0; i < batch->digs; i++) {
         const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
         const size_t                     g   = batch->dig[i].group;
         const struct dig_measured        dug = { .trajectory  = dig->trajectory,
                                                  .pass        = each ? dig->pass : 1,
-                                                 .pace        = paced ? dig->pace : 1.0,
-                                                 .pitch_known = each && dig->pitch_known,
+                                                 .pace        = each ? dig->pace : 1.0,
+                                                 .pitch_known = pitched,
                                                  .pitch_rad   = dig->pitch_rad };
         dig_basis_along(batch->soil->surface->set, &dug, told->dig[i].value);
         for (size_t f = 0; f < DIG_BASES; f++) {
@@ -188,15 +190,12 @@ static void tell(const struct dig_whitened_digs *const batch, const bool each,
     }
 }
 
-// What dig i has that its group's mean has not; false where that is nothing of the candidates.
+// What dig i has that its group's mean has not; false where that is nothing.
 static bool differ(const struct dig_whitened_digs *const batch, const struct told *const told,
-                   const size_t i, const size_t candidates, const enum dig_basis candidate[],
-                   struct states *const less)
+                   const size_t i, struct states *const less)
 {
     bool any = false;
-    memset(less, 0, sizeof *less);
-    for (size_t n = 0; n < candidates; n++) {
-        const enum dig_basis f = candidate[n];
+    for (size_t f = 0; f < DIG_BASES; f++) {
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
             less->value[f][b] =
                 told->dig[i].value[f][b] - told->mean[batch->dig[i].group].value[f][b];
@@ -227,9 +226,6 @@ struct dig_regressed dig_regress(const struct dig_whitened_digs *const batch,
     assert(batch != NULL && plain != NULL);
     struct regression r = { .rows = 0 };
     struct told       told;
-    enum dig_basis    candidate[DIG_BASES];
-    const size_t      by_digs    = dig_basis_told(batch, candidate);
-    const size_t      candidates = each ? by_digs : COMMON; // which are the first
     double            amplitude[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS];
     tell(batch, each, &told);
     for (size_t g = 0; g < batch->groups; g++) {
@@ -237,9 +233,9 @@ struct dig_regressed dig_regress(const struct dig_whitened_digs *const batch,
     }
     for (size_t i = 0; each && i < batch->digs; i++) {
         struct states less;
-        if (differ(batch, &told, i, candidates, candidate, &less)) {
+        if (differ(batch, &told, i, &less)) {
             fill_dig(batch, i, &less, amplitude[batch->dig[i].group], &r);
         }
     }
-    return choose(&r, candidates, candidate);
+    return choose(&r, each ? DIG_BASES : COMMON);
 }

@@ -19,9 +19,9 @@ struct dig_regressed {
 
 /// Regresses what a fitted plain hypothesis leaves of the trajectories' means on the functions that
 /// the trajectory tells. each: and of how the digs of a trajectory differ from each other, on all
-/// functions that the digs tell, at the paces they were dug with. With more functions to choose
-/// from each must bring more evidence, by the log of their number over that of those of the
-/// trajectory: chance finds a function no more often.
+/// functions, at the paces they were dug with; on pitch where all digs have it. With more functions
+/// to choose from each must bring more evidence, by the log of their number over that of those of
+/// the trajectory: chance finds a function no more often.
 struct dig_regressed dig_regress(const struct dig_whitened_digs *batch,
                                  const struct dig_fitted *plain, bool each);
 

@@ -18,6 +18,7 @@ static struct dig_measured      measured[DIGS];
 // How the digs of a campaign differ.
 struct differ {
     bool passes, paces, pitches;
+    bool hardly; // as a machine keeps its pace and stands
 };
 
 // Digs along simpleA, and every other along actual where asked for.
@@ -31,6 +32,11 @@ static void draw(const bool two, const struct differ *const differ, uint64_t *co
         measured[i].pace        = differ->paces && (i / 2) % 2 == 1 ? 1.6 : 1.0;
         measured[i].pitch_known = differ->pitches;
         measured[i].pitch_rad   = differ->pitches ? DIG_RAD_PER_DEG * (double)((i / 2) % 4) : 0.0;
+        if (differ->hardly) {
+            measured[i].pace        = 1.0 + 0.05 * (model_uniform(seed) - 0.5);
+            measured[i].pitch_known = true;
+            measured[i].pitch_rad   = 0.2 * DIG_RAD_PER_DEG * model_uniform(seed);
+        }
     }
 }
 
@@ -160,11 +166,12 @@ TEST(what_comes_where_the_bucket_is_jerked_is_said_to)
 TEST(plain_digs_depend_on_nothing_more_often_than_before)
 {
     const int                  draws    = test_is_quick() ? 60 : 600;
-    static const struct differ differ[] = { { false, false, false },
-                                            { true, false, false },
-                                            { false, true, false },
-                                            { true, true, true } };
-    static const char *const   name[]   = { "all alike", "passes", "paces", "all three" };
+    static const struct differ differ[] = { { false, false, false, false },
+                                            { true, false, false, false },
+                                            { false, true, false, false },
+                                            { true, true, true, false },
+                                            { false, false, false, true } };
+    static const char *const   name[]   = { "all alike", "passes", "paces", "all three", "hardly" };
     for (size_t d = 0; d < sizeof differ / sizeof differ[0]; d++) {
         uint64_t seed   = 31 + d;
         int      before = 0;
