@@ -105,12 +105,12 @@ static const struct dig_soil_template *terms_of(const struct dig_soil *const soi
                                                 double       term[DIG_SOIL_TERMS])
 {
     const struct dig_soil_template *const template = dig_soil_template_at(soil, effect, t, u);
-    double scaled                                  = u;
+    struct dig_soil_at at = { u, dig_soil_strength(soil->surface, place, amplitude) };
     if (dig_effect_of(effect) != NULL && dig_effect_of(effect)->over_density) {
         const struct dig_gravel gravel = dig_response_surface_gravel(soil->surface, place);
-        scaled *= template->base_density_kgpm3 / gravel.value[DIG_AXIS_DENSITY_kgpm3];
+        at.u *= template->base_density_kgpm3 / gravel.value[DIG_AXIS_DENSITY_kgpm3];
     }
-    dig_soil_terms(template, scaled, dig_soil_strength(soil->surface, place, amplitude), term);
+    dig_soil_terms(template, &at, term);
     return template;
 }
 

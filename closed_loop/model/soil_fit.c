@@ -45,7 +45,8 @@ const struct dig_soil_template *dig_soil_template_at(const struct dig_soil *cons
 
 // One bed of an effect along one trajectory, relative to the plain dig of its gravel.
 struct bed {
-    double                  u, strength, weight;
+    double                  weight;
+    double                  term[DIG_SOIL_TERMS]; // of the template
     double                  amplitude[DIG_FORCE_CHANNELS];
     const struct dig_curve *curve;
     double                  plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
@@ -54,7 +55,7 @@ struct bed {
 
 static void describe_bed(const struct dig_soil *const soil, const struct dig_entry_set *const set,
                          const struct dig_scatter *const scatter, const size_t entry,
-                         const size_t t, struct bed *const bed)
+                         const size_t t, struct dig_soil_at *const at, struct bed *const bed)
 {
     const struct dig_entry *const of = &set->entry[entry];
     double                        place[DIG_AXES];
@@ -62,9 +63,9 @@ static void describe_bed(const struct dig_soil *const soil, const struct dig_ent
     dig_response_surface_place(soil->surface, &of->gravel, place);
     dig_response_surface_features(soil->surface, t, place, plain, bed->amplitude);
     dig_response_surface_curve(soil->surface, t, place, bed->plain);
-    bed->curve    = &set->curve[entry * set->trajectories + t];
-    bed->u        = (of->magnitude - soil->absent[of->effect]) / soil->scale[of->effect];
-    bed->strength = dig_soil_strength(soil->surface, place, bed->amplitude);
+    bed->curve   = &set->curve[entry * set->trajectories + t];
+    at->u        = (of->magnitude - soil->absent[of->effect]) / soil->scale[of->effect];
+    at->strength = dig_soil_strength(soil->surface, place, bed->amplitude);
 
     // A dig that is larger with the effect scatters more, and so does one of a strong gravel.
     double size[DIG_FORCE_CHANNELS];
@@ -74,20 +75,21 @@ static void describe_bed(const struct dig_soil *const soil, const struct dig_ent
         bed->feature[f] = (bed->feature[f] - plain[f]) / bed->amplitude[f / DIG_FEATURE_BINS];
     }
     bed->weight = (double)set->packings[entry * set->trajectories + t] /
-                  (dig_scatter_factor(scatter, t, bed->strength) *
+                  (dig_scatter_factor(scatter, t, at->strength) *
                    pow(size[DIG_CHANNEL_MY_Nm] / bed->amplitude[DIG_CHANNEL_MY_Nm], 2.0));
 }
 
 static size_t gather(const struct dig_soil *const soil, const struct dig_entry_set *const set,
                      const struct dig_scatter *const scatter, const enum dig_effect_id effect,
-                     const size_t side, const size_t t, struct bed bed[])
+                     const size_t side, const size_t t, struct dig_soil_at at[], struct bed bed[])
 {
     size_t beds = 0;
     for (size_t e = 0; e < set->entries; e++) {
         const struct dig_entry *const of = &set->entry[e];
         if (of->effect == effect && set->packings[e * set->trajectories + t] > 0 &&
             side_of(effect, of->magnitude - soil->absent[effect]) == side) {
-            describe_bed(soil, set, scatter, e, t, &bed[beds++]);
+            describe_bed(soil, set, scatter, e, t, &at[beds], &bed[beds]);
+            beds++;
         }
     }
     return beds;
@@ -101,8 +103,7 @@ static enum dig_status invert(const size_t beds, const struct bed bed[],
     const size_t n                                       = template->terms;
     double       normal[DIG_SOIL_TERMS * DIG_SOIL_TERMS] = { 0.0 };
     for (size_t b = 0; b < beds; b++) {
-        double term[DIG_SOIL_TERMS];
-        dig_soil_terms(template, bed[b].u, bed[b].strength, term);
+        const double *const term = bed[b].term;
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j < n; j++) {
                 normal[i * n + j] += bed[b].weight * term[i] * term[j];
@@ -128,12 +129,10 @@ static enum dig_status invert(const size_t beds, const struct bed bed[],
 static void shares_of(const struct dig_soil_template *const template, const struct bed *const bed,
                       double share[DIG_SOIL_TERMS])
 {
-    double term[DIG_SOIL_TERMS];
-    dig_soil_terms(template, bed->u, bed->strength, term);
     for (size_t j = 0; j < template->terms; j++) {
         share[j] = 0.0;
         for (size_t i = 0; i < template->terms; i++) {
-            share[j] += bed->weight * template->inverse[j][i] * term[i];
+            share[j] += bed->weight * template->inverse[j][i] * bed->term[i];
         }
     }
 }
@@ -157,7 +156,7 @@ static void fit_features(const size_t beds, const struct bed bed[],
 // them likeliest, term by term, by MacKay's fixed point (1992): its square over the share of it
 // that the beds tell. A term that few beds ask for by less than their scatter then adds no noise.
 static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
-                                 const double scatter[DIG_FEATURES],
+                                 const double scatter[DIG_FEATURES][DIG_FEATURES],
                                  struct dig_soil_template *const template)
 {
     double          precision[DIG_SOIL_TERMS] = { 0.0 };
@@ -174,7 +173,7 @@ static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
             const double told   = 1.0 - template->inverse[j][j] * precision[j];
             double       square = 0.0;
             for (size_t f = 0; f < DIG_FEATURES; f++) {
-                square += template->feature[j][f] * template->feature[j][f] / scatter[f] /
+                square += template->feature[j][f] * template->feature[j][f] / scatter[f][f] /
                           (double)DIG_FEATURES;
             }
             square /= fmax(told, least_told);
@@ -184,7 +183,8 @@ static enum dig_status fit_terms(const size_t beds, const struct bed bed[],
     return status;
 }
 
-static void fit(const size_t beds, const struct bed bed[], const double scatter[DIG_FEATURES],
+static void fit(const size_t beds, const struct bed bed[],
+                const double scatter[DIG_FEATURES][DIG_FEATURES],
                 struct dig_soil_template *const template)
 {
     if (fit_terms(beds, bed, scatter, template) != DIG_OK) {
@@ -234,61 +234,34 @@ static bool set_range(struct dig_soil *const soil, const struct dig_entry_set *c
     return true;
 }
 
-// The template of one side of an effect along a trajectory, of what beds there are. bed: room for
-// all.
-static enum dig_status fit_side(struct dig_soil *const soil, const struct dig_entry_set *const set,
-                                const struct dig_scatter *const scatter,
-                                const enum dig_effect_id effect, const size_t side, const size_t t,
-                                struct bed bed[])
-{
-    const size_t beds = gather(soil, set, scatter, effect, side, t, bed);
-    if (beds == 0) {
-        return DIG_OK;
-    }
-    double own[DIG_FEATURES]; // variance of one dig
-    for (size_t f = 0; f < DIG_FEATURES; f++) {
-        own[f] = scatter->covariance[t][f][f];
-    }
-    struct dig_soil_template *const template = &soil->template[effect][side][t];
-    template->base_density_kgpm3             = set->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3];
-
-    double *const at = calloc(2 * beds, sizeof *at);
-    if (at == NULL) {
-        return DIG_ENOMEM;
-    }
-    for (size_t b = 0; b < beds; b++) {
-        at[b]        = bed[b].u;
-        at[beds + b] = bed[b].strength;
-    }
-    const enum dig_status status = dig_soil_terms_choose(beds, at, at + beds, template);
-    if (status == DIG_OK) {
-        fit(beds, bed, own, template);
-    }
-    free(at);
-    return status;
-}
-
 enum dig_status dig_soil_fit(struct dig_soil *const soil, const struct dig_entry_set *const set,
                              const struct dig_scatter *const scatter)
 {
     assert(soil != NULL && set != NULL && scatter != NULL);
-    struct bed *const bed = calloc(set->entries + 1, sizeof *bed);
-    if (bed == NULL) {
-        return DIG_ENOMEM;
-    }
-    enum dig_status status = DIG_OK;
-    for (int e = 0; e < DIG_EFFECTS; e++) {
+    struct bed *const         bed    = calloc(set->entries + 1, sizeof *bed);
+    struct dig_soil_at *const at     = calloc(set->entries + 1, sizeof *at);
+    const enum dig_status     status = bed != NULL && at != NULL ? DIG_OK : DIG_ENOMEM;
+    for (int e = 0; e < DIG_EFFECTS && status == DIG_OK; e++) {
         const enum dig_effect_id effect = (enum dig_effect_id)e;
-        if (!set_range(soil, set, effect)) {
-            continue;
-        }
-        for (size_t t = 0; t < set->trajectories; t++) {
-            for (size_t side = 0;
-                 side < DIG_SOIL_SIDES && soil->surface->known[t] && status == DIG_OK; side++) {
-                status = fit_side(soil, set, scatter, effect, side, t, bed);
+        const bool               any    = set_range(soil, set, effect);
+        for (size_t i = 0; any && i < set->trajectories * DIG_SOIL_SIDES; i++) {
+            const size_t t                           = i / DIG_SOIL_SIDES;
+            const size_t side                        = i % DIG_SOIL_SIDES;
+            struct dig_soil_template *const template = &soil->template[effect][side][t];
+            const size_t beds =
+                soil->surface->known[t] ? gather(soil, set, scatter, effect, side, t, at, bed) : 0;
+            if (beds == 0) {
+                continue;
             }
+            template->base_density_kgpm3 = set->entry[0].gravel.value[DIG_AXIS_DENSITY_kgpm3];
+            dig_soil_terms_choose(beds, at, template);
+            for (size_t b = 0; b < beds; b++) {
+                dig_soil_terms(template, &at[b], bed[b].term);
+            }
+            fit(beds, bed, (const double(*)[DIG_FEATURES])scatter->covariance[t], template);
         }
     }
     free(bed);
+    free(at);
     return status;
 }

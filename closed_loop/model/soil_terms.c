@@ -4,84 +4,69 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // How far beyond the base gravels' strengths a template goes on changing.
 static const double most_strength = 1.3;
 
-// Magnitudes and strengths are numbers of a file or of a formula: the same, or far apart.
-static bool is_same(const double a, const double b)
-{
-    return fabs(a - b) <= 1e-6;
-}
+// Magnitudes and strengths are numbers of a file or of a formula: the same, or further apart.
+static const double same = 1e-6;
 
-// Sorts level[] and drops those that are the same; how many stay.
-static size_t keep_unlike(const size_t levels, double level[])
+// The least magnitude, or strength, above one; INFINITY where there is none.
+static double next(const size_t beds, const struct dig_soil_at at[], const bool is_u,
+                   const double above)
 {
-    size_t kept = 0;
-    dig_sort(levels, level);
-    for (size_t i = 0; i < levels; i++) {
-        if (kept == 0 || !is_same(level[i], level[kept - 1])) {
-            level[kept++] = level[i];
-        }
-    }
-    return kept;
-}
-
-static bool is_of_two_gravels(const size_t beds, const double u[], const double strength[],
-                              const double magnitude)
-{
-    size_t one = beds;
+    double least = INFINITY;
     for (size_t b = 0; b < beds; b++) {
-        if (is_same(u[b], magnitude)) {
-            if (one < beds && !is_same(strength[b], strength[one])) {
-                return true;
-            }
-            one = b;
-        }
+        const double level = is_u ? at[b].u : at[b].strength;
+        least              = level > above + same ? fmin(least, level) : least;
     }
-    return false;
+    return least;
 }
 
-// A bend at a magnitude that one gravel alone was dug at would bend all others as it does that one.
-static void choose_knots(const size_t beds, const double u[], const double strength[],
-                         const size_t magnitudes, const double magnitude[],
-                         struct dig_soil_template *const template)
+static bool is_of_two_gravels(const size_t beds, const struct dig_soil_at at[], const double u)
 {
+    double least = INFINITY;
+    double most  = -INFINITY;
+    for (size_t b = 0; b < beds; b++) {
+        if (fabs(at[b].u - u) <= same) {
+            least = fmin(least, at[b].strength);
+            most  = fmax(most, at[b].strength);
+        }
+    }
+    return most - least > same;
+}
+
+void dig_soil_terms_choose(const size_t beds, const struct dig_soil_at at[],
+                           struct dig_soil_template *const template)
+{
+    assert(beds > 0 && at != NULL && template != NULL);
+    const double least     = next(beds, at, false, -INFINITY);
+    double       most      = least;
+    size_t       strengths = 0;
+    for (double s = least; isfinite(s); s = next(beds, at, false, s)) {
+        most = s;
+        strengths++;
+    }
+    template->powers = strengths < DIG_SOIL_POWERS ? strengths : DIG_SOIL_POWERS;
+    template->centre = 0.5 * (least + most);
+    template->half   = fmax(0.5 * (most - least), 1e-3);
+
+    // A bend at a magnitude that one gravel alone was dug at would bend all others as it does that.
     double knot[DIG_SOIL_KNOTS] = { 0.0 };
     size_t knots                = 1;
-    for (size_t i = 0; i < magnitudes; i++) {
-        if (knots < DIG_SOIL_KNOTS && is_of_two_gravels(beds, u, strength, magnitude[i])) {
-            knot[knots++] = magnitude[i];
+    size_t magnitudes           = 0;
+    for (double u = next(beds, at, true, -INFINITY); isfinite(u); u = next(beds, at, true, u)) {
+        magnitudes++;
+        if (knots < DIG_SOIL_KNOTS && is_of_two_gravels(beds, at, u)) {
+            knot[knots++] = u;
         }
     }
     dig_sort(knots, knot);
     template->knots = knots > 2 ? knots : 0;
     memcpy(template->knot, knot, template->knots * sizeof *knot);
-}
-
-enum dig_status dig_soil_terms_choose(const size_t beds, const double u[], const double strength[],
-                                      struct dig_soil_template *const template)
-{
-    assert(beds > 0 && u != NULL && strength != NULL && template != NULL);
-    double *const level = calloc(beds, sizeof *level);
-    if (level == NULL) {
-        return DIG_ENOMEM;
-    }
-    memcpy(level, strength, beds * sizeof *level);
-    const size_t strengths = keep_unlike(beds, level);
-    template->powers       = strengths < DIG_SOIL_POWERS ? strengths : DIG_SOIL_POWERS;
-    template->centre       = 0.5 * (level[0] + level[strengths - 1]);
-    template->half         = fmax(0.5 * (level[strengths - 1] - level[0]), 1e-3);
-
-    memcpy(level, u, beds * sizeof *level);
-    const size_t magnitudes = keep_unlike(beds, level);
-    choose_knots(beds, u, strength, magnitudes, level, template);
     template->shapes = (magnitudes > 1 ? 2 : 1) + template->knots;
     template->terms  = template->shapes *template->powers;
-    free(level);
-    return DIG_OK;
 }
 
 // The line, the parabola and the hats at u; the hat of "absent" is left out.
@@ -104,13 +89,13 @@ static void shapes_of(const struct dig_soil_template *const template, const doub
     shape[3 + i]   = fabs(knot[i + 1]) > 0.0 ? f : 0.0;
 }
 
-void dig_soil_terms(const struct dig_soil_template *const template, const double u,
-                    const double strength, double term[DIG_SOIL_TERMS])
+void dig_soil_terms(const struct dig_soil_template *const template,
+                    const struct dig_soil_at *const at, double term[DIG_SOIL_TERMS])
 {
-    const double s =
-        fmin(fmax((strength - template->centre) / template->half, -most_strength), most_strength);
-    double shape[DIG_SOIL_SHAPES];
-    shapes_of(template, u, shape);
+    const double s = fmin(fmax((at->strength - template->centre) / template->half, -most_strength),
+                          most_strength);
+    double       shape[DIG_SOIL_SHAPES];
+    shapes_of(template, at->u, shape);
     for (size_t j = 0; j < template->terms; j += template->powers) {
         double power = 1.0;
         for (size_t p = 0; p < template->powers; p++) {

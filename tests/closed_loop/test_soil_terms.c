@@ -6,14 +6,15 @@
 #include <string.h>
 
 // Two gravels at 1 and 2 magnitudes of a half and one; a quarter of one gravel alone.
-static const double u[]        = { 0.5, 1.0, 0.5, 1.0, 0.25 };
-static const double strength[] = { 1.0, 1.0, 2.0, 2.0, 1.0 };
+static const struct dig_soil_at beds_at[] = {
+    { 0.5, 1.0 }, { 1.0, 1.0 }, { 0.5, 2.0 }, { 1.0, 2.0 }, { 0.25, 1.0 }
+};
 
 static struct dig_soil_template choose(const size_t beds)
 {
     struct dig_soil_template template;
     memset(&template, 0, sizeof template);
-    assert_int_equal(dig_soil_terms_choose(beds, u, strength, &template), DIG_OK);
+    dig_soil_terms_choose(beds, beds_at, &template);
     return template;
 }
 
@@ -38,7 +39,7 @@ TEST(hats_are_straight_between_magnitudes_and_go_on_beyond)
     const struct dig_soil_template t = choose(5);
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         double term[DIG_SOIL_TERMS] = { 0.0 };
-        dig_soil_terms(&t, known[i].u, 2.0, term);
+        dig_soil_terms(&t, &(struct dig_soil_at){ known[i].u, 2.0 }, term);
         for (size_t p = 0; p < 2; p++) {
             assert_close(term[p], known[i].u, 1e-15);
             assert_close(term[2 + p], known[i].u * known[i].u, 1e-15);
@@ -55,8 +56,8 @@ TEST(a_gravel_changes_no_more_far_beyond_the_strongest)
     double                         far[DIG_SOIL_TERMS], farther[DIG_SOIL_TERMS];
     memset(far, 0, sizeof far);
     memset(farther, 0, sizeof farther);
-    dig_soil_terms(&t, 1.0, 10.0, far);
-    dig_soil_terms(&t, 1.0, 20.0, farther);
+    dig_soil_terms(&t, &(struct dig_soil_at){ 1.0, 10.0 }, far);
+    dig_soil_terms(&t, &(struct dig_soil_at){ 1.0, 20.0 }, farther);
     assert_memory_equal(far, farther, sizeof far);
     assert_true(far[1] > 1.0);
 }
@@ -66,6 +67,6 @@ TEST(one_bed_is_a_straight_line)
     const struct dig_soil_template t = choose(1);
     assert_int_equal(t.terms, 1);
     double term[DIG_SOIL_TERMS] = { 0.0 };
-    dig_soil_terms(&t, 0.3, 7.0, term);
+    dig_soil_terms(&t, &(struct dig_soil_at){ 0.3, 7.0 }, term);
     assert_close(term[0], 0.3, 0.0);
 }
