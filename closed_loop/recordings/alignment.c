@@ -74,6 +74,18 @@ struct dig_alignment_place dig_alignment_place(const size_t rows, const double p
     return place;
 }
 
+struct dig_pose dig_alignment_pose(const struct dig_recording *const       recording,
+                                   const struct dig_alignment_place *const place)
+{
+    const struct dig_force_row *const a = &recording->row[place->row];
+    const struct dig_force_row *const b = a + 1;
+    const double                      f = place->fraction;
+    return (struct dig_pose){ a->pin_x_m + f * (b->pin_x_m - a->pin_x_m),
+                              a->pin_z_m + f * (b->pin_z_m - a->pin_z_m),
+                              (a->theta_deg + f * (b->theta_deg - a->theta_deg)) *
+                                  DIG_RAD_PER_DEG };
+}
+
 void dig_alignment_compare(const struct dig_recording *const recording, const double progress[],
                            const struct dig_alignment_target *const target,
                            struct dig_alignment_part *const         part)
@@ -89,16 +101,12 @@ void dig_alignment_compare(const struct dig_recording *const recording, const do
         at                 = dig_alignment_place(recording->rows, progress,
                                                  (along - part->from) / (part->to - part->from), at.row);
 
-        const struct dig_force_row *const a = &recording->row[at.row];
-        const struct dig_force_row *const b = a + 1;
-        const double                      f = at.fraction;
-        const double                      theta_rad =
-            (a->theta_deg + f * (b->theta_deg - a->theta_deg)) * DIG_RAD_PER_DEG;
+        const struct dig_pose here = dig_alignment_pose(recording, &at);
         const struct dig_pose pose = dig_trajectory_pose(
             target->trajectory, dig_trajectory_time_s(target->trajectory, target->tooth_m, along));
-        off[k].x_m       = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m) - pose.x_m;
-        off[k].z_m       = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m) - pose.z_m;
-        off[k].theta_rad = theta_rad - pose.theta_rad;
+        off[k].x_m       = here.x_m - pose.x_m;
+        off[k].z_m       = here.z_m - pose.z_m;
+        off[k].theta_rad = here.theta_rad - pose.theta_rad;
         mean.x_m += off[k].x_m / POINTS;
         mean.z_m += off[k].z_m / POINTS;
         mean.theta_rad += off[k].theta_rad / POINTS;

@@ -41,6 +41,10 @@ struct dig_alignment_place {
 struct dig_alignment_place dig_alignment_place(size_t rows, const double progress[], double at,
                                                size_t from);
 
+/// The pose at such a place, straight between the rows; what the path's sensors read.
+struct dig_pose dig_alignment_pose(const struct dig_recording       *recording,
+                                   const struct dig_alignment_place *place);
+
 /// The rms distance between recorded and prescribed poses at equal progress of what both have,
 /// without the mean offset of the pin (the ground may lie anywhere) and the mean turn within the
 /// target's range: fills off and turned_rad of a part from its from and to.

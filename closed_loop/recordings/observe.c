@@ -45,15 +45,8 @@ static void lay_out(const struct dig_recording *const recording, const struct co
         const double progress = (double)k / (DIG_APPROACH_FIT_POINTS - 1);
         at                    = dig_alignment_place(c->rows, c->progress, progress, at.row);
 
-        const double                      f = at.fraction;
-        const struct dig_force_row *const a = &recording->row[at.row];
-        const struct dig_force_row *const b = a + 1;
-        way[k]                              = (struct dig_path_point){
-                                         .x_m = a->pin_x_m + f * (b->pin_x_m - a->pin_x_m),
-                                         .z_m = a->pin_z_m + f * (b->pin_z_m - a->pin_z_m),
-                                         .turn_m =
-                                             tooth_m * DIG_RAD_PER_DEG * (a->theta_deg + f * (b->theta_deg - a->theta_deg)),
-        };
+        const struct dig_pose pose = dig_alignment_pose(recording, &at);
+        way[k] = (struct dig_path_point){ pose.x_m, pose.z_m, tooth_m * pose.theta_rad };
     }
 }
 

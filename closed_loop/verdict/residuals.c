@@ -30,20 +30,23 @@ static void fill_dig(const struct dig_trace_work *const   w,
     dig_residual_of(w->set, dig, curves, true, to->after);
 }
 
-// States and relative residuals of the digs fitted to, where they were measured.
+// States and relative residuals of the digs fitted to; n points from first on were measured.
 struct points {
     size_t digs;
-    size_t n[DIG_MEASURED_MAX];
+    size_t first[DIG_MEASURED_MAX], n[DIG_MEASURED_MAX];
     double state[DIG_MEASURED_MAX][DIG_REGRESSORS][DIG_CURVE_POINTS];
     double y[DIG_MEASURED_MAX][DIG_CURVE_POINTS];
 };
 
-// The size of what was predicted of a channel; both forces have that of their resultant.
-static double size_of(const struct dig_trace_curves *const curves,
-                      const struct dig_measured *const dig, const size_t channel)
+// Adds a dig: over the size of what was predicted of the channel; both forces have that of their
+// resultant. One without any has none.
+static void add(const struct dig_curve_set *const set, const struct dig_measured *const dig,
+                const struct dig_trace_curves *const curves, const size_t channel,
+                struct points *const p)
 {
-    double sum = 0.0;
-    double n   = 0.0;
+    const size_t i   = p->digs;
+    double       sum = 0.0;
+    p->n[i]          = 0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress = (double)k / (DIG_CURVE_POINTS - 1);
         if (progress >= dig->first && progress <= dig->last) {
@@ -52,36 +55,18 @@ static double size_of(const struct dig_trace_curves *const curves,
                                     : hypot(curves->before[DIG_CHANNEL_FX_N][k],
                                             curves->before[DIG_CHANNEL_FZ_N][k]);
             sum += size * size;
-            n += 1.0;
+            p->first[i] = k - p->n[i]++;
         }
     }
-    return n > 0.0 ? sqrt(sum / n) : 0.0;
-}
-
-static void collect(const struct dig_trace_work *const w, const struct dig_trace_curves curves[],
-                    const size_t channel, struct points *const p)
-{
-    p->digs = 0;
-    for (size_t i = 0; i < w->digs; i++) {
-        const struct dig_measured *const dig  = &w->measured[i];
-        const double                     size = size_of(&curves[i], dig, channel);
-        if (dig->use == DIG_USE_HOLDOUT || !dig->measured[channel] || !(size > 0.0)) {
-            continue;
-        }
-        double state[DIG_REGRESSORS][DIG_CURVE_POINTS];
-        size_t n = 0;
-        dig_regressors_along(w->set, dig, state);
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-            if (progress >= dig->first && progress <= dig->last) {
-                for (size_t s = 0; s < DIG_REGRESSORS; s++) {
-                    p->state[p->digs][s][n] = state[s][k];
-                }
-                p->y[p->digs][n++] = (dig->value[channel][k] - curves[i].before[channel][k]) / size;
-            }
-        }
-        p->n[p->digs++] = n;
+    const double size = sqrt(sum / fmax((double)p->n[i], 1.0));
+    if (!(size > 0.0)) {
+        return;
     }
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        p->y[i][k] = (dig->value[channel][k] - curves->before[channel][k]) / size;
+    }
+    dig_regressors_along(set, dig, p->state[i]);
+    p->digs++;
 }
 
 static void fill_trends(const struct dig_trace_work *const w,
@@ -90,12 +75,18 @@ static void fill_trends(const struct dig_trace_work *const w,
 {
     struct points p;
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        collect(w, curves, c, &p);
+        p.digs = 0;
+        for (size_t i = 0; i < w->digs; i++) {
+            if (w->measured[i].use != DIG_USE_HOLDOUT && w->measured[i].measured[c]) {
+                add(w->set, &w->measured[i], &curves[i], c, &p);
+            }
+        }
         residuals->known[c] = p.digs > 0;
         for (size_t s = 0; s < DIG_REGRESSORS; s++) {
             struct dig_trend_dig dig[DIG_MEASURED_MAX];
             for (size_t i = 0; i < p.digs; i++) {
-                dig[i] = (struct dig_trend_dig){ p.n[i], p.state[i][s], p.y[i] };
+                dig[i] = (struct dig_trend_dig){ p.n[i], &p.state[i][s][p.first[i]],
+                                                 &p.y[i][p.first[i]] };
             }
             dig_trend_fit(p.digs, dig, w->settings->seed, &residuals->trend[c][s]);
         }

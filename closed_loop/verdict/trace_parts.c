@@ -215,16 +215,13 @@ static double fit_error(const struct dig_trace_work *const w, const struct dig_f
     struct dig_score    all                     = { 0 };
     for (size_t i = 0; i < w->batch->digs; i++) {
         const struct dig_measured *const dig = &w->measured[w->batch->dig[i].measured];
-        struct dig_score                 one = { 0 };
         double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         dig_fitted_curve(w->soil, fitted, dig, curve);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             curve[DIG_CHANNEL_MY_Nm][k] += dig->machine[DIG_CHANNEL_MY_Nm][k];
         }
-        dig_score_add(&one, &w->set->trajectory[dig->trajectory], w->set->tooth_m, dig->first,
+        dig_score_add(&all, &w->set->trajectory[dig->trajectory], w->set->tooth_m, dig->first,
                       dig->last, dig->value[DIG_CHANNEL_MY_Nm], curve[DIG_CHANNEL_MY_Nm], no_sd);
-        all.wrong_N2m2s += one.wrong_N2m2s;
-        all.whole_N2m2s += one.whole_N2m2s;
     }
     return dig_score_error(&all);
 }
