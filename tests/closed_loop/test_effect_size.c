@@ -14,15 +14,13 @@ static struct dig_fitted        plain;
 
 static int make(void **state)
 {
-    static const struct dig_hypothesis none                           = { .effects = 0 };
-    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    uint64_t                           seed                           = 3;
+    uint64_t seed = 3;
     if (world_setup(state) != DIG_OK) {
         return 1;
     }
     dig_in_turn(DIGS, &gravel, 0, NULL, NULL, &seed, measured);
     batch_digs(DIGS, measured, &gravel, &batch);
-    dig_hypothesis_fit(&batch, &none, middle, DIG_FIT_THOROUGH, &plain);
+    plain = fit_plain(&batch);
     return 0;
 }
 

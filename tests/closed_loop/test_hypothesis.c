@@ -71,17 +71,14 @@ static double made_variance(const struct dig_whitened_digs_group *const group,
 // table holds, what the table does not know counts for so much less.
 TEST(the_tables_error_counts_for_less_beside_larger_digs)
 {
-    static const struct dig_hypothesis plain                         = { .effects = 0 };
-    const struct dig_gravel            gravel                        = { { 0.6, 0.55, 3900 } };
-    const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    const struct dig_gravel gravel = { { 0.6, 0.55, 3900 } };
     for (double larger = 1.0; larger < 4.0; larger += 2.0) {
         static struct dig_whitened_digs batch;
-        struct dig_fitted               fitted;
         dig(&gravel, larger, 9);
         batch_digs(DIGS, measured, &gravel, &batch);
-        dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &fitted);
-        const struct dig_gravel found = dig_response_surface_gravel(world.surface, fitted.number);
-        const double            truth = made_variance(&batch.group[0], &found);
+        const struct dig_fitted fitted = fit_plain(&batch);
+        const struct dig_gravel found  = dig_response_surface_gravel(world.surface, fitted.number);
+        const double            truth  = made_variance(&batch.group[0], &found);
         struct dig_common_error error[DIG_TRAJECTORY_MAX];
         dig_hypothesis_errors(&batch, &fitted, error);
         const double said = error[0].even - rough;

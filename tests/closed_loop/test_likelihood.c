@@ -24,8 +24,7 @@ static int campaigns(void)
     return test_is_quick() ? 20 : 300;
 }
 
-static const struct dig_hypothesis plain                         = { .effects = 0 };
-static const double                start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+static const struct dig_hypothesis plain = { .effects = 0 };
 
 // Digs of two trajectories, and two steps that add to both, about as much as a dig scatters: one
 // does what another gravel would do, the other anything.
@@ -126,9 +125,8 @@ TEST(fitted_steps_are_as_far_off_as_is_said)
     const struct dig_gravel         gravel     = { { 0.6, 0.6, 2500 } };
     uint64_t                        seed       = 8;
     double                          sum[STEPS] = { 0.0 };
-    struct dig_fitted               truth;
     make_digs(&gravel, &seed);
-    dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &truth);
+    const struct dig_fitted truth = fit_plain(&batch);
     for (int c = 0; c < campaigns(); c++) {
         double                  z[STEPS];
         double                  covariance[STEPS * STEPS];

@@ -17,11 +17,7 @@ static struct dig_whiteness judge(const double magnitude, uint64_t seed)
     const enum dig_effect_id cohesion = DIG_EFFECT_COHESION;
     dig_in_turn(DIGS, &gravel, 1, &cohesion, &magnitude, &seed, measured);
     batch_digs(DIGS, measured, &gravel, &batch);
-    const struct dig_hypothesis none                          = { .effects = 0 };
-    double                      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_fitted           plain;
-    dig_response_surface_place(world.surface, &gravel, start);
-    dig_hypothesis_fit(&batch, &none, start, DIG_FIT_THOROUGH, &plain);
+    const struct dig_fitted    plain = fit_plain(&batch);
     const struct dig_whiteness white = dig_portmanteau_judge(&batch, &plain, DRAWS, seed);
     assert_int_equal(white.digs, DIGS);
     return white;

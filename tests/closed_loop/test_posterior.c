@@ -20,12 +20,9 @@ static const struct dig_hypothesis plain = { .effects = 0 };
 
 static struct dig_fitted fit_digs(const struct dig_gravel *const gravel, uint64_t *const seed)
 {
-    const double      start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_fitted fitted;
     dig_in_turn(DIGS, gravel, 0, NULL, NULL, seed, measured);
     batch_digs(DIGS, measured, gravel, &batch);
-    dig_hypothesis_fit(&batch, &plain, start, DIG_FIT_THOROUGH, &fitted);
-    return fitted;
+    return fit_plain(&batch);
 }
 
 // Digs drawn from the model itself at places of its prior: nine of ten intervals hold the place,

@@ -7,18 +7,18 @@
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 8 };
 
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
+static struct dig_measured      measured[DIGS];
+static struct dig_whitened_digs batch;
+
 // Each bed is dug and recorded so many times, every time with noise of this share of the moment.
-static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], const size_t times,
-                                          const double noise, uint64_t seed)
+static void make_batch(const size_t times, const double noise, uint64_t seed)
 {
-    struct dig_whitened_digs *const batch = malloc(sizeof *batch);
     for (size_t i = 0; i < DIGS; i++) {
         if (i % times == 0) {
             measured[i] = made_dig(&gravel, MADE_ACTUAL, 0, NULL, NULL, &seed);
@@ -31,38 +31,30 @@ static struct dig_whitened_digs *batch_of(struct dig_measured measured[DIGS], co
             }
         }
     }
-    batch_digs(DIGS, measured, &gravel, batch);
-    return batch;
+    batch_digs(DIGS, measured, &gravel, &batch);
 }
 
 TEST(recordings_of_one_bed_count_once)
 {
-    struct dig_measured *const measured = calloc(DIGS, sizeof *measured);
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (size_t times = 1; times <= DIGS; times *= 2) {
-            struct dig_whitened_digs *const batch = batch_of(measured, times, 0.03, seed);
-            const size_t                    beds  = DIGS / times;
-            assert_int_equal(dig_same_bed_count(batch, 0), beds);
-            assert_close(1.0 / DIGS + batch->group[0].repeats, 1.0 / (double)beds, 1e-12);
-            free(batch);
+            const size_t beds = DIGS / times;
+            make_batch(times, 0.03, seed);
+            assert_int_equal(dig_same_bed_count(&batch, 0), beds);
+            assert_close(1.0 / DIGS + batch.group[0].repeats, 1.0 / (double)beds, 1e-12);
         }
     }
-    free(measured);
 }
 
 TEST(without_a_dig_its_bed_counts_as_long_as_another_has_it)
 {
-    struct dig_measured *const      measured = calloc(DIGS, sizeof *measured);
-    struct dig_whitened_digs *const batch    = batch_of(measured, 2, 0.03, 5);
-    struct dig_whitened_digs *const others   = malloc(sizeof *others);
-    dig_whitened_digs_leave_out(batch, 0, others);
-    assert_close(others->group[0].repeats, 1.0 / 4 - 1.0 / 7, 1e-12);
-    *batch = *others;
-    dig_whitened_digs_leave_out(batch, 0, others);
-    assert_close(others->group[0].repeats, 1.0 / 3 - 1.0 / 6, 1e-12);
-    free(others);
-    free(batch);
-    free(measured);
+    static struct dig_whitened_digs others;
+    make_batch(2, 0.03, 5);
+    dig_whitened_digs_leave_out(&batch, 0, &others);
+    assert_close(others.group[0].repeats, 1.0 / 4 - 1.0 / 7, 1e-12);
+    batch = others;
+    dig_whitened_digs_leave_out(&batch, 0, &others);
+    assert_close(others.group[0].repeats, 1.0 / 3 - 1.0 / 6, 1e-12);
 }
 
 // What the mean of digs is off by is what the mean of their beds is: over many campaigns, the
@@ -71,23 +63,16 @@ TEST(without_a_dig_its_bed_counts_as_long_as_another_has_it)
 TEST(the_mean_of_one_bed_is_no_nearer_to_its_gravel)
 {
     enum { CAMPAIGNS = 60 };
-    static const struct dig_hypothesis plain    = { .effects = 0 };
-    struct dig_measured *const         measured = calloc(DIGS, sizeof *measured);
-    double                             mean[2]  = { 0.0 };
-    double                             middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    double mean[2] = { 0.0 };
     for (uint64_t seed = 1; seed <= CAMPAIGNS; seed++) {
         for (int once = 0; once < 2; once++) {
-            struct dig_whitened_digs *const batch =
-                batch_of(measured, once ? 1 : DIGS, 0.03, 100 * seed);
-            struct dig_fitted fitted;
-            dig_hypothesis_fit(batch, &plain, middle, DIG_FIT_THOROUGH, &fitted);
-            mean[once] += (fitted.squares - batch->group[0].about) / CAMPAIGNS;
-            free(batch);
+            make_batch(once ? 1 : DIGS, 0.03, 100 * seed);
+            const struct dig_fitted fitted = fit_plain(&batch);
+            mean[once] += (fitted.squares - batch.group[0].about) / CAMPAIGNS;
         }
     }
     print_message("squares of the mean: %.1f of one bed, %.1f of %d\n", mean[0], mean[1], DIGS);
     assert_true(mean[0] > 0.7 * mean[1] && mean[0] < 2.0 * mean[1]);
-    free(measured);
 }
 
 TESTS_WITH(world_setup, world_teardown)

@@ -79,21 +79,18 @@ TEST(nothing_is_found_where_nothing_is)
 TEST(digs_are_drawn_with_the_noise_of_their_sensors)
 {
     enum { MANY = 40 };
-    static const struct dig_hypothesis plain                         = { .effects = 0 };
-    const struct dig_gravel            gravel                        = { { 0.6, 0.55, 2500 } };
-    const double                       start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_measured               *loud                          = calloc(MANY, sizeof *loud);
-    struct dig_whitened_digs          *drawn                         = malloc(2 * sizeof *drawn);
-    struct dig_common_error            error[DIG_TRAJECTORY_MAX];
-    struct dig_fitted                  fitted;
-    uint64_t                           seed = 5;
+    const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
+    struct dig_measured      *loud   = calloc(MANY, sizeof *loud);
+    struct dig_whitened_digs *drawn  = malloc(2 * sizeof *drawn);
+    struct dig_common_error   error[DIG_TRAJECTORY_MAX];
+    uint64_t                  seed = 5;
     dig_in_turn(MANY, &gravel, 0, NULL, NULL, &seed, loud);
     for (size_t i = 0; i < MANY; i++) {
         dig_add_noise(3.0, &seed, &loud[i]);
     }
     batch_digs(MANY, loud, &gravel, drawn);
-    drawn[1] = drawn[0];
-    dig_hypothesis_fit(drawn, &plain, start, DIG_FIT_BARE, &fitted);
+    drawn[1]                       = drawn[0];
+    const struct dig_fitted fitted = fit_plain(drawn);
     dig_hypothesis_errors(drawn, &fitted, error);
     dig_null_simulation_digs(drawn, &fitted, error, &seed, &drawn[1]);
     for (size_t g = 0; g < drawn->groups; g++) {

@@ -19,7 +19,6 @@ static struct dig_trace_work work(const size_t digs)
 {
     static const enum dig_effect_id    effect = DIG_EFFECT_LAYERING;
     static const struct dig_gravel     gravel = { { 0.6, 0.55, 2500 } };
-    static const struct dig_hypothesis plain  = { .effects = 0 };
     static const struct dig_hypothesis layer  = { .effects = 1, .effect = { DIG_EFFECT_LAYERING } };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     const double                       magnitude                      = 0.8;
@@ -28,7 +27,7 @@ static struct dig_trace_work work(const size_t digs)
     batch_digs(digs, measured, &gravel, &batch);
     memset(&search, 0, sizeof search);
     search.significant = true;
-    dig_hypothesis_fit(&batch, &plain, middle, DIG_FIT_THOROUGH, &search.plain);
+    search.plain       = fit_plain(&batch);
     dig_hypothesis_fit(&batch, &layer, middle, DIG_FIT_THOROUGH, &search.chosen);
     air = (struct dig_machine_finding){ .p_complete = 1.0, .no_air = true };
     return (struct dig_trace_work){ .soil = soil, .batch = &batch, .search = &search, .air = &air };

@@ -52,13 +52,10 @@ static double size_of(const struct dig_measured *const dig, const size_t c)
 // Fits the plain hypothesis to all digs and regresses what it leaves.
 static void regress(struct dig_regressed *const means, struct dig_regressed *const digs)
 {
-    static const struct dig_hypothesis none                           = { .effects = 0 };
-    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_fitted                  plain;
     batch_digs(DIGS, measured, &gravel, &batch);
-    dig_hypothesis_fit(&batch, &none, middle, DIG_FIT_THOROUGH, &plain);
-    *means = dig_regress(&batch, &plain, false);
-    *digs  = dig_regress(&batch, &plain, true);
+    const struct dig_fitted plain = fit_plain(&batch);
+    *means                        = dig_regress(&batch, &plain, false);
+    *digs                         = dig_regress(&batch, &plain, true);
 }
 
 static bool has(const struct dig_regressed *const r, const enum dig_basis basis)

@@ -4,7 +4,7 @@
 #ifndef DIG_TESTS_WORLD_FIXTURE_H
 #define DIG_TESTS_WORLD_FIXTURE_H
 
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/hypothesis.h"
 #include "core/chance.h"
 #include "tests/made_campaign.h"
 #include "tests/testlib.h"
@@ -90,6 +90,16 @@ static inline void batch_digs(const size_t digs, const struct dig_measured measu
     assert_int_equal(dig_whitened_digs_make(soil, world.scatter, digs, measured, take,
                                             gravel != NULL ? place : NULL, batch),
                      DIG_OK);
+}
+
+// The plain gravel that suits a batch best.
+static inline struct dig_fitted fit_plain(const struct dig_whitened_digs *const batch)
+{
+    static const struct dig_hypothesis none                           = { .effects = 0 };
+    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_fitted                  fitted;
+    dig_hypothesis_fit(batch, &none, middle, DIG_FIT_THOROUGH, &fitted);
+    return fitted;
 }
 
 #endif // DIG_TESTS_WORLD_FIXTURE_H
