@@ -1,13 +1,32 @@
 // The residual of a batch, over each dig's amplitude, regressed on functions of its state
-// (closed_loop/search/unlisted_basis.h): coefficients shared by all trajectories, one for each
-// channel, functions chosen one after the other by BIC, the gravel refitted with them to first
-// order.
+// and of how the machine stood, all without dimension: coefficients shared by all trajectories, one
+// for each channel, functions chosen one after the other by BIC, the gravel refitted with them to
+// first order.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_REGRESSION_H
 #define DIG_CLOSED_LOOP_SEARCH_UNLISTED_REGRESSION_H
 
 #include "closed_loop/fit/hypothesis.h"
-#include "closed_loop/search/unlisted_basis.h"
+
+/// What a residual may depend on. Those before DIG_BASIS_ACCELERATION are told by the trajectory
+/// and the pace.
+enum dig_basis {
+    DIG_BASIS_AMPLITUDE, // 1
+    DIG_BASIS_DEPTH,     // over the tooth's length
+    DIG_BASIS_DEPTH_SQUARED,
+    DIG_BASIS_FILL,         // area swept / tooth^2
+    DIG_BASIS_PATH,         // progress
+    DIG_BASIS_SPEED,        // over the mean of the table's dig
+    DIG_BASIS_TURNING,      // share of the tooth's speed
+    DIG_BASIS_LIFTING,      // 1 where the bucket goes up faster than along
+    DIG_BASIS_ACCELERATION, // of the tooth, over mean speed^2 / path of the table's dig
+    DIG_BASIS_PASS,         // how often the place was dug before
+    DIG_BASIS_PITCH,        // of the machine, mean over the dig, rad
+    DIG_BASES
+};
+
+/// "amplitude", "depth", …, for people.
+const char *dig_basis_name(enum dig_basis basis);
 
 #define DIG_UNLISTED_MOST 3 // functions in one answer
 

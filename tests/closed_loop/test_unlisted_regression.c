@@ -1,4 +1,4 @@
-// Tests for closed_loop/search/unlisted_basis.c and closed_loop/search/unlisted_regression.c
+// Tests for closed_loop/search/unlisted_regression.c
 
 #include "closed_loop/search/unlisted_regression.h"
 
