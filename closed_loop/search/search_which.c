@@ -20,22 +20,6 @@ static const double half = 0.5;
 // Of a normal distribution, exceeded either way once in a hundred.
 static const double most_bent = 2.576;
 
-// The chosen hypothesis with each other effect beside it.
-static size_t list_additions(const struct dig_search_work *const c,
-                             const struct dig_hypothesis *const  base,
-                             struct dig_hypothesis               added[DIG_RIVALS_MAX])
-{
-    size_t n = 0;
-    for (size_t i = 0; i < c->s->rivals; i++) {
-        if (!dig_search_holds(base, c->single[i].effect[0])) {
-            added[n]                            = *base;
-            added[n].effect[added[n].effects++] = c->single[i].effect[0];
-            n++;
-        }
-    }
-    return n;
-}
-
 // The best pair made with one of the best single effects. False when none is better than single.
 static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const pair)
 {
@@ -45,7 +29,15 @@ static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const 
         struct dig_hypothesis added[DIG_RIVALS_MAX];
         struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
         struct dig_statistic  statistic;
-        const size_t          n = list_additions(c, &c->single[first], added);
+        size_t                n = 0;
+        for (size_t i = 0; i < c->s->rivals; i++) {
+            if (i != first) {
+                added[n]           = c->single[first];
+                added[n].effects   = 2;
+                added[n].effect[1] = c->single[i].effect[0];
+                n++;
+            }
+        }
         dig_null_simulation_fit(c->batch, &c->single[first], n, added,
                                 c->s->rival[first].fitted.number, DIG_FIT_BARE, fitted, &statistic);
         if (statistic.best < n && fitted[1 + statistic.best].misfit < best) {

@@ -18,13 +18,6 @@ double dig_search_evidence(const struct dig_search_work *const c,
            dig_search_penalty(c->batch, dig_hypothesis_free(&fitted->hypothesis) + more);
 }
 
-bool dig_search_holds(const struct dig_hypothesis *const hypothesis,
-                      const enum dig_effect_id           effect)
-{
-    const size_t effects = hypothesis->effects;
-    return dig_effect_place(effects, hypothesis->effect, effect) < effects;
-}
-
 double dig_search_best_evidence(const struct dig_search *const s)
 {
     return s->rivals > 0 ? fmax(s->rival[0].log_evidence, 0.0) : 0.0;

@@ -27,8 +27,6 @@ double dig_search_penalty(const struct dig_whitened_digs *batch, size_t numbers)
 double dig_search_evidence(const struct dig_search_work *c, const struct dig_fitted *fitted,
                            size_t more);
 
-bool dig_search_holds(const struct dig_hypothesis *hypothesis, enum dig_effect_id effect);
-
 /// The most evidence of a single effect, or 0 when none has any.
 double dig_search_best_evidence(const struct dig_search *s);
 
