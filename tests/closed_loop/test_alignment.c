@@ -10,6 +10,10 @@
 
 #define TOOTH_m 0.09
 
+enum { ROWS_MAX = 2700 };
+
+static double progress[ROWS_MAX];
+
 // Down and then along: 0.6 s at 0.05 m/s, 2 s at 0.0463 m/s, a turn of 0.3 rad/s in the last.
 static const struct dig_trajectory dug = { "dug",
                                            -0.26,
@@ -40,6 +44,7 @@ static struct dig_recording drive(const double from_s, const double to_s, const 
     const size_t         rows  = (size_t)((to_s - from_s) * rate_Hz) + 1;
     struct dig_recording r     = { rows, calloc(rows, sizeof *r.row) };
     uint64_t             state = 17;
+    assert_true(rows <= ROWS_MAX);
     for (size_t i = 0; i < rows; i++) {
         const double          t_s  = from_s + (double)i / rate_Hz;
         const struct dig_pose pose = dig_trajectory_pose(&dug, t_s);
@@ -61,8 +66,7 @@ TEST(noise_of_the_path_makes_no_way)
 {
     const struct scatter *const noises[] = { &clean, &real };
     for (int n = 0; n < 2; n++) {
-        struct dig_recording r        = drive(0.0, 2.6, 1000.0, noises[n]);
-        double *const        progress = calloc(r.rows, sizeof *progress);
+        struct dig_recording r = drive(0.0, 2.6, 1000.0, noises[n]);
         assert_close(dig_alignment_progress(&r, TOOTH_m, progress) / way_m(2.6), 1.0,
                      n == 0 ? 0.01 : 0.2);
         for (size_t i = 0; i < r.rows; i++) {
@@ -70,7 +74,6 @@ TEST(noise_of_the_path_makes_no_way)
             assert_true(i == 0 || progress[i] >= progress[i - 1]);
         }
         assert_close(progress[r.rows - 1], 1.0, 1e-12);
-        free(progress);
         dig_recording_finish(&r);
     }
 }
@@ -78,14 +81,12 @@ TEST(noise_of_the_path_makes_no_way)
 static void expect_part(const double from_s, const double to_s, const struct scatter *const noise,
                         const double within)
 {
-    struct dig_recording r        = drive(from_s, to_s, 200.0, noise);
-    double *const        progress = calloc(r.rows, sizeof *progress);
+    struct dig_recording r = drive(from_s, to_s, 200.0, noise);
     (void)dig_alignment_progress(&r, TOOTH_m, progress);
     const struct dig_alignment_part part = dig_alignment_align(&r, progress, &still);
     assert_close(part.from, way_m(from_s) / way_m(2.6), within);
     assert_close(part.to, way_m(to_s) / way_m(2.6), within);
     assert_true(part.off < 0.004);
-    free(progress);
     dig_recording_finish(&r);
 }
 
@@ -106,7 +107,6 @@ TEST(another_path_is_not_bent_to_fit)
     for (size_t i = 0; i < r.rows; i++) {
         r.row[i].pin_z_m += 0.003 * sin(2.4 * r.row[i].t_s);
     }
-    double *const progress = calloc(r.rows, sizeof *progress);
     (void)dig_alignment_progress(&r, TOOTH_m, progress);
     const struct dig_alignment_part part  = dig_alignment_align(&r, progress, &still);
     struct dig_alignment_part       whole = { .to = 1.0 };
@@ -115,16 +115,14 @@ TEST(another_path_is_not_bent_to_fit)
     assert_close(part.to, 1.0, 0.0);
     assert_close(part.off, whole.off, 1e-12);
     assert_true(part.off > 0.01);
-    free(progress);
     dig_recording_finish(&r);
 }
 
 // Of a turn beyond what the target allows the rest is distance.
 TEST(a_turned_bucket_is_told_within_the_range)
 {
-    static const struct dig_alignment_target target   = { &dug, TOOTH_m, -0.1, 0.1 };
-    struct dig_recording                     r        = drive(0.0, 2.6, 200.0, &clean);
-    double *const                            progress = calloc(r.rows, sizeof *progress);
+    static const struct dig_alignment_target target = { &dug, TOOTH_m, -0.1, 0.1 };
+    struct dig_recording                     r      = drive(0.0, 2.6, 200.0, &clean);
     (void)dig_alignment_progress(&r, TOOTH_m, progress);
     for (int turns = 1; turns <= 3; turns++) { // each by .06 rad
         for (size_t i = 0; i < r.rows; i++) {
@@ -135,16 +133,14 @@ TEST(a_turned_bucket_is_told_within_the_range)
         assert_close(part.off, fmax(0.06 * turns - 0.1, 0.0), 0.002);
         assert_close(part.to - part.from, 1.0, 0.0);
     }
-    free(progress);
     dig_recording_finish(&r);
 }
 
 // What is missing is told beside a turn, too.
 TEST(a_part_of_a_turned_dig_is_told)
 {
-    static const struct dig_alignment_target target   = { &dug, TOOTH_m, -0.2, 0.2 };
-    struct dig_recording                     r        = drive(0.15, 2.3, 200.0, &clean);
-    double *const                            progress = calloc(r.rows, sizeof *progress);
+    static const struct dig_alignment_target target = { &dug, TOOTH_m, -0.2, 0.2 };
+    struct dig_recording                     r      = drive(0.15, 2.3, 200.0, &clean);
     (void)dig_alignment_progress(&r, TOOTH_m, progress);
     for (size_t i = 0; i < r.rows; i++) {
         r.row[i].theta_deg -= 0.1 / DIG_RAD_PER_DEG;
@@ -153,6 +149,5 @@ TEST(a_part_of_a_turned_dig_is_told)
     assert_close(part.from, way_m(0.15) / way_m(2.6), 0.01);
     assert_close(part.to, way_m(2.3) / way_m(2.6), 0.01);
     assert_close(part.turned_rad, -0.1, 0.005);
-    free(progress);
     dig_recording_finish(&r);
 }

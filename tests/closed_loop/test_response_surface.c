@@ -3,23 +3,35 @@
 #include "tests/made_table.h"
 #include "tests/testlib.h"
 
-#include <stdlib.h>
+static struct dig_curve_set       *set;
+static struct dig_response_surface surface;
+
+static void make(const struct made_options options)
+{
+    made_table_destroy(set);
+    set = made_table(&options);
+    assert_int_equal(dig_response_surface_fit(set, &surface), DIG_OK);
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    made_table_destroy(set);
+    return 0;
+}
 
 // The made table is linear in friction and rolling friction and proportional to density: between
 // its points the surface must agree with the closed form.
 TEST(between_the_points_it_is_the_truth)
 {
-    const struct made_options    options = { .relative_sd = 0.1, .packings = 5 };
-    struct dig_curve_set        *set     = made_table(&options);
-    struct dig_response_surface *surface = malloc(sizeof *surface);
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    make((struct made_options){ .relative_sd = 0.1, .packings = 5 });
     const struct dig_gravel gravel[] = { { { 0.4, 0.25, 2000 } }, { { 0.75, 0.8, 3300 } } };
     for (size_t i = 0; i < 2; i++) {
         for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
             double place[DIG_AXES];
             double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-            dig_response_surface_place(surface, &gravel[i], place);
-            dig_response_surface_curve(surface, t, place, curve);
+            dig_response_surface_place(&surface, &gravel[i], place);
+            dig_response_surface_curve(&surface, t, place, curve);
             for (size_t k = 0; k < DIG_CURVE_POINTS; k += 15) {
                 const double truth = made_moment_Nm(&gravel[i], (enum made_trajectory)t,
                                                     (double)k / (DIG_CURVE_POINTS - 1), 0.0);
@@ -28,79 +40,61 @@ TEST(between_the_points_it_is_the_truth)
             }
         }
     }
-    free(surface);
-    made_table_destroy(set);
 }
 
 TEST(a_place_is_a_gravel_and_back)
 {
-    const struct made_options    options = { .packings = 2, .one_density = true };
-    struct dig_curve_set        *set     = made_table(&options);
-    struct dig_response_surface *surface = malloc(sizeof *surface);
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    make((struct made_options){ .packings = 2, .one_density = true });
     const struct dig_gravel gravel = { { 0.42, 0.87, 2500 } };
     double                  place[DIG_AXES];
-    dig_response_surface_place(surface, &gravel, place);
+    dig_response_surface_place(&surface, &gravel, place);
     assert_close(place[DIG_AXIS_DENSITY_kgpm3], 0.0, 0.0);
-    const struct dig_gravel back = dig_response_surface_gravel(surface, place);
+    const struct dig_gravel back = dig_response_surface_gravel(&surface, place);
     for (int a = 0; a < DIG_AXES; a++) {
         assert_close(back.value[a], gravel.value[a], 1e-9);
     }
-    free(surface);
-    made_table_destroy(set);
 }
 
 // The same digs in three entries are no more digs than in one.
 TEST(copies_vouch_for_nothing_twice)
 {
-    const struct made_options    options         = { .packings = 6 };
-    struct dig_curve_set        *set             = made_table(&options);
-    struct dig_response_surface *surface         = malloc(sizeof *surface);
-    const double                 place[DIG_AXES] = { 0.3, -0.4, 0.1 };
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
-    const double thrice = dig_response_surface_noise(surface, MADE_ACTUAL, place);
-    set->copies         = 3;
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
-    const double once = dig_response_surface_noise(surface, MADE_ACTUAL, place);
+    make((struct made_options){ .packings = 6 });
+    const double place[DIG_AXES] = { 0.3, -0.4, 0.1 };
+    const double thrice          = dig_response_surface_noise(&surface, MADE_ACTUAL, place);
+    set->copies                  = 3;
+    assert_int_equal(dig_response_surface_fit(set, &surface), DIG_OK);
+    const double once = dig_response_surface_noise(&surface, MADE_ACTUAL, place);
     assert_true(once > 2.0 * thrice); // three times, but for the prior of the cubic terms
     assert_true(once < 3.01 * thrice);
-    free(surface);
-    made_table_destroy(set);
 }
 
 // Features are linear in the curve, so those of the surface are those of its curve.
 TEST(features_are_those_of_the_curve)
 {
-    const struct made_options    options = { .packings = 3 };
-    struct dig_curve_set        *set     = made_table(&options);
-    struct dig_response_surface *surface = malloc(sizeof *surface);
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    make((struct made_options){ .packings = 3 });
     const double place[DIG_AXES] = { 0.3, -0.4, 0.1 };
     double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double       of_curve[DIG_FEATURES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-    dig_response_surface_curve(surface, MADE_ACTUAL, place, curve);
+    dig_response_surface_curve(&surface, MADE_ACTUAL, place, curve);
     dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
-    dig_response_surface_features(surface, MADE_ACTUAL, place, feature, size);
+    dig_response_surface_features(&surface, MADE_ACTUAL, place, feature, size);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         assert_close(feature[f], of_curve[f], 1e-9 * size[f / DIG_FEATURE_BINS]);
     }
-    free(surface);
-    made_table_destroy(set);
 }
 
 // How much of an entry's own size the surface takes over there: by making the entry larger.
-static double share_taken_over(struct dig_curve_set *const set, const size_t e)
+static double share_taken_over(const size_t e)
 {
     enum { BEFORE, AFTER, TIMES };
-    static const float           larger  = 1.01F;
-    const size_t                 slot    = e * set->trajectories;
-    struct dig_response_surface *surface = malloc(sizeof *surface);
-    double                       log_size[TIMES];
+    static const float larger = 1.01F;
+    const size_t       slot   = e * set->trajectories;
+    double             log_size[TIMES];
     for (int time = BEFORE; time < TIMES; time++) {
         double place[DIG_AXES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-        assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
-        dig_response_surface_place(surface, &set->gravel[e], place);
-        dig_response_surface_features(surface, 0, place, feature, size);
+        assert_int_equal(dig_response_surface_fit(set, &surface), DIG_OK);
+        dig_response_surface_place(&surface, &set->gravel[e], place);
+        dig_response_surface_features(&surface, 0, place, feature, size);
         log_size[time] = log(size[DIG_CHANNEL_MY_Nm]);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
@@ -109,7 +103,6 @@ static double share_taken_over(struct dig_curve_set *const set, const size_t e)
             }
         }
     }
-    free(surface);
     return (log_size[AFTER] - log_size[BEFORE]) / log((double)larger);
 }
 
@@ -117,31 +110,24 @@ static double share_taken_over(struct dig_curve_set *const set, const size_t e)
 // surface's variance there is h / n.
 TEST(its_noise_is_what_it_takes_over_from_each_entry)
 {
-    const struct made_options    options = { .packings = 4 };
-    struct dig_curve_set        *set     = made_table(&options);
-    struct dig_response_surface *surface = malloc(sizeof *surface);
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
+    make((struct made_options){ .packings = 4 });
     for (size_t e = 0; e < set->entries; e += 5) {
         double place[DIG_AXES];
-        dig_response_surface_place(surface, &set->gravel[e], place);
-        assert_close(dig_response_surface_noise(surface, 0, place), share_taken_over(set, e) / 4.0,
+        dig_response_surface_place(&surface, &set->gravel[e], place);
+        assert_close(dig_response_surface_noise(&surface, 0, place), share_taken_over(e) / 4.0,
                      1e-3);
     }
-    free(surface);
-    made_table_destroy(set);
 }
 
 TEST(too_few_entries_are_refused)
 {
-    const struct made_options    options = { .packings = 4 };
-    struct dig_curve_set        *set     = made_table(&options);
-    struct dig_response_surface *surface = malloc(sizeof *surface);
+    make((struct made_options){ .packings = 4 });
     for (size_t e = 5; e < set->entries; e++) {
         for (size_t t = 0; t < set->trajectories; t++) {
             set->packings[e * set->trajectories + t] = 0;
         }
     }
-    assert_int_equal(dig_response_surface_fit(set, surface), DIG_EINVAL);
-    free(surface);
-    made_table_destroy(set);
+    assert_int_equal(dig_response_surface_fit(set, &surface), DIG_EINVAL);
 }
+
+TESTS_WITH(NULL, tear_down)
