@@ -18,7 +18,7 @@ struct gathering {
     size_t                             entries;
     size_t                             packings;
     double                             feature[PACKINGS_MAX][DIG_FEATURES];
-    size_t                             residuals, room;
+    size_t                             residuals;
     struct dig_scatter_residual       *residual;
 };
 
@@ -32,27 +32,18 @@ static bool is_same_entry(const struct dig_run_origin *const a,
     return same;
 }
 
-static enum dig_status make_room(struct gathering *const g, const size_t more)
-{
-    if (g->residuals + more <= g->room) {
-        return DIG_OK;
-    }
-    const size_t                       room  = 2 * g->room + PACKINGS_MAX;
-    struct dig_scatter_residual *const grown = realloc(g->residual, room * sizeof *grown);
-    if (grown == NULL) {
-        return DIG_ENOMEM;
-    }
-    g->residual = grown;
-    g->room     = room;
-    return DIG_OK;
-}
-
 // Turns the runs of the entry that is complete into residuals about their mean.
 static enum dig_status finish_entry(struct gathering *const g)
 {
-    if (g->packings == 0 || make_room(g, g->packings) != DIG_OK) {
-        return g->packings == 0 ? DIG_OK : DIG_ENOMEM;
+    if (g->packings == 0) {
+        return DIG_OK;
     }
+    struct dig_scatter_residual *const grown =
+        realloc(g->residual, (g->residuals + g->packings) * sizeof *grown);
+    if (grown == NULL) {
+        return DIG_ENOMEM;
+    }
+    g->residual               = grown;
     double mean[DIG_FEATURES] = { 0.0 };
     double amplitude[DIG_FORCE_CHANNELS];
     for (size_t p = 0; p < g->packings; p++) {

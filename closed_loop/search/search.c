@@ -172,7 +172,7 @@ void dig_search_run(struct dig_whitened_digs *const batch, const double false_al
     dig_search_which(&c);
     search->outside = !search->is_rock && dig_search_is_outside(&c);
     if (search->unlisted && !search->is_rock && !search->outside &&
-        search->without_name.functions == 0 &&
+        !(search->without_name.log_evidence > 0.0) &&
         dig_search_best_evidence(search) < DIG_SEARCH_TOLD_APART &&
         search->p_complete > rarer * false_alarm) {
         search->unlisted    = false;

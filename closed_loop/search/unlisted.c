@@ -13,8 +13,7 @@ struct dig_unlisted dig_unlisted_find(const struct dig_whitened_digs *const batc
     assert(batch != NULL && plain != NULL);
     const struct dig_regressed means = dig_regress(batch, plain, false);
     const struct dig_regressed digs  = dig_regress(batch, plain, true);
-    struct dig_unlisted        found = { .log_evidence = means.log_evidence,
-                                         .functions    = means.functions };
+    struct dig_unlisted        found = { .log_evidence = means.log_evidence };
     // What decides is what it was; where only that finds anything, it is also what is said.
     const struct dig_regressed *const said = digs.functions > 0 ? &digs : &means;
     for (size_t i = 0; i < said->functions; i++) {

@@ -14,8 +14,7 @@
 #include "core/model.h"
 
 struct dig_unlisted {
-    double log_evidence;    // - BIC / 2 less that of the plain hypothesis
-    size_t functions;       // of the trajectory, chosen
+    double log_evidence;    // - BIC / 2 less that of the plain hypothesis; 0: nothing was chosen
     char   depends_on[128]; // for people; "": nothing that was tried
 };
 

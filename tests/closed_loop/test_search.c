@@ -182,7 +182,7 @@ TEST(what_has_no_name_gets_none)
     assert_true(s.significant);
     assert_true(s.unlisted);
     assert_int_equal(s.chosen.hypothesis.effects, 0);
-    assert_true(s.without_name.functions > 0);
+    assert_true(s.without_name.log_evidence > 0.0);
 }
 
 TEST(a_gravel_beyond_the_grid_is_no_effect)
