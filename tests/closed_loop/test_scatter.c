@@ -8,10 +8,26 @@
 
 enum { ENTRIES = 80, PACKINGS = 4 };
 
+static struct dig_curve_set       *set;
+static struct dig_response_surface surface;
+
+static int set_up(void **state)
+{
+    (void)state;
+    set = made_table(&(struct made_options){ .relative_sd = 0.15, .packings = 5 });
+    return dig_response_surface_fit(set, &surface);
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    made_table_destroy(set);
+    return 0;
+}
+
 // Residuals about their entry's mean of digs whose features have sd 0.1 (first half of the bins) or
 // 0.2, neighbours correlated by a half, everything times sqrt(factor).
-static struct dig_scatter *pooled(const struct dig_response_surface *const surface,
-                                  const double                             slope)
+static struct dig_scatter *pooled(const double slope)
 {
     uint64_t                     seed = 9;
     struct dig_scatter_residual *r    = calloc((size_t)ENTRIES * PACKINGS, sizeof *r);
@@ -39,25 +55,14 @@ static struct dig_scatter *pooled(const struct dig_response_surface *const surfa
         }
     }
     struct dig_scatter *scatter = NULL;
-    assert_int_equal(dig_scatter_pool(surface, (size_t)ENTRIES * PACKINGS, r, &scatter), DIG_OK);
+    assert_int_equal(dig_scatter_pool(&surface, (size_t)ENTRIES * PACKINGS, r, &scatter), DIG_OK);
     free(r);
     return scatter;
 }
 
-static struct dig_response_surface *make_surface(struct dig_curve_set **const set)
-{
-    const struct made_options options    = { .relative_sd = 0.15, .packings = 5 };
-    *set                                 = made_table(&options);
-    struct dig_response_surface *surface = malloc(sizeof *surface);
-    assert_int_equal(dig_response_surface_fit(*set, surface), DIG_OK);
-    return surface;
-}
-
 TEST(a_known_covariance_is_found)
 {
-    struct dig_curve_set        *set;
-    struct dig_response_surface *surface = make_surface(&set);
-    struct dig_scatter          *s       = pooled(surface, 0.0);
+    struct dig_scatter *s = pooled(0.0);
     assert_close(s->freedom[0], ENTRIES * (PACKINGS - 1), 1e-9);
     assert_close(s->widened[0], 1.05, 0.1);
     for (size_t f = 0; f + 1 < DIG_FEATURES; f++) {
@@ -69,30 +74,22 @@ TEST(a_known_covariance_is_found)
     }
     assert_close(dig_scatter_factor(s, 0, 1.0), 1.0, 0.15);
     dig_scatter_destroy(s);
-    free(surface);
-    made_table_destroy(set);
 }
 
 TEST(stronger_gravels_may_scatter_more)
 {
-    struct dig_curve_set        *set;
-    struct dig_response_surface *surface = make_surface(&set);
-    struct dig_scatter          *s       = pooled(surface, 0.6);
+    struct dig_scatter *s = pooled(0.6);
     assert_close(dig_scatter_factor(s, 0, 1.0) / dig_scatter_factor(s, 0, 0.0), 1.6, 0.2);
     assert_close(dig_scatter_factor(s, 0, -1.0) / dig_scatter_factor(s, 0, 0.0), 0.45, 0.15);
     assert_true(dig_scatter_factor(s, 0, -100.0) >= 0.4); // never none
     dig_scatter_destroy(s);
-    free(surface);
-    made_table_destroy(set);
 }
 
 // Without second packings the curves' own standard deviation is all there is.
 TEST(a_table_without_runs_uses_its_curves)
 {
-    struct dig_curve_set        *set;
-    struct dig_response_surface *surface = make_surface(&set);
-    struct dig_scatter          *s       = NULL;
-    assert_int_equal(dig_scatter_pool(surface, 0, NULL, &s), DIG_OK);
+    struct dig_scatter *s = NULL;
+    assert_int_equal(dig_scatter_pool(&surface, 0, NULL, &s), DIG_OK);
     assert_int_equal(s->residuals[0], 0);
     assert_close(s->freedom[0], 0.0, 0.0);
     // The made table's is 0.15 of the curve at each point, so of the rms it is between.
@@ -102,20 +99,16 @@ TEST(a_table_without_runs_uses_its_curves)
     }
     assert_close(sqrt(mean), 0.15, 0.02);
     dig_scatter_destroy(s);
-    free(surface);
-    made_table_destroy(set);
 }
 
 // Three packings of one entry whose channels are each too strong or too weak all along the dig, or
 // have nothing to do with it from bin to bin.
 static double neighbours_of_few(const double alike)
 {
-    struct dig_curve_set        *set;
-    struct dig_response_surface *surface = make_surface(&set);
-    struct dig_scatter          *s       = NULL;
-    struct dig_scatter_residual  r[3] = { { .packings = 3 }, { .packings = 3 }, { .packings = 3 } };
-    uint64_t                     seed = 4;
-    assert_int_equal(dig_scatter_pool(surface, 0, NULL, &s), DIG_OK); // how large the curves say
+    struct dig_scatter         *s    = NULL;
+    struct dig_scatter_residual r[3] = { { .packings = 3 }, { .packings = 3 }, { .packings = 3 } };
+    uint64_t                    seed = 4;
+    assert_int_equal(dig_scatter_pool(&surface, 0, NULL, &s), DIG_OK); // how large the curves say
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         double off[3];
         for (size_t p = 0; p < 3; p++) {
@@ -128,13 +121,11 @@ static double neighbours_of_few(const double alike)
         }
     }
     dig_scatter_destroy(s);
-    assert_int_equal(dig_scatter_pool(surface, 3, r, &s), DIG_OK);
+    assert_int_equal(dig_scatter_pool(&surface, 3, r, &s), DIG_OK);
     assert_close(s->freedom[0], 2.0, 1e-9);
     const double correlation =
         s->covariance[0][3][4] / sqrt(s->covariance[0][3][3] * s->covariance[0][4][4]);
     dig_scatter_destroy(s);
-    free(surface);
-    made_table_destroy(set);
     return correlation;
 }
 
@@ -143,3 +134,5 @@ TEST(few_packings_say_how_alike_neighbours_are)
     assert_true(neighbours_of_few(0.95) > 0.85);
     assert_true(neighbours_of_few(0.0) < 0.55);
 }
+
+TESTS_WITH(set_up, tear_down)

@@ -5,12 +5,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The plain features and size at a gravel.
-static void plain_at(const struct dig_gravel *const gravel, const size_t t, double place[DIG_AXES],
-                     double plain[DIG_FEATURES], double size[DIG_FORCE_CHANNELS])
+// A gravel's dig, plain and with an effect: features and curves.
+struct dug {
+    double size[DIG_FORCE_CHANNELS], noise;
+    double plain[DIG_FEATURES], with[DIG_FEATURES];
+    double bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS], curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+};
+
+static struct dug dig_with(const struct dig_gravel *const gravel, const size_t t,
+                           const enum dig_effect_id effect, const double u, const double contrast,
+                           const double share)
 {
+    struct dug dug = { .noise = 0.0 };
+    double     place[DIG_AXES];
     dig_response_surface_place(world.surface, gravel, place);
-    dig_response_surface_features(world.surface, t, place, plain, size);
+    dig_response_surface_features(world.surface, t, place, dug.plain, dug.size);
+    dig_response_surface_curve(world.surface, t, place, dug.bare);
+    memcpy(dug.with, dug.plain, sizeof dug.with);
+    memcpy(dug.curve, dug.bare, sizeof dug.curve);
+    dig_soil_add(soil, effect, t, place, u, contrast, share, dug.plain, dug.size, dug.with,
+                 &dug.noise);
+    dig_soil_add_curve(soil, effect, t, place, u, contrast, share,
+                       (const double(*)[DIG_CURVE_POINTS])dug.bare, dug.curve);
+    return dug;
 }
 
 // What the made world puts in at half its largest magnitude comes out, at a gravel that is none of
@@ -21,11 +38,7 @@ TEST(a_template_gives_back_what_was_put_in)
                                                  DIG_EFFECT_LAYERING };
     const struct dig_gravel         gravel   = { { 0.6, 0.5, 2500 } };
     for (size_t e = 0; e < sizeof effect / sizeof effect[0]; e++) {
-        double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-        double noise = 0.0;
-        plain_at(&gravel, MADE_ACTUAL, place, plain, size);
-        memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.5, 1.0, 1.0, plain, size, with, &noise);
+        const struct dug dug = dig_with(&gravel, MADE_ACTUAL, effect[e], 0.5, 1.0, 1.0);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             size_t from, to;
             dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
@@ -40,11 +53,11 @@ TEST(a_template_gives_back_what_was_put_in)
             // The made size is a channel's own rms, the features' that of the resultant force.
             const double own[DIG_FORCE_CHANNELS] = { 1.0, 8.0 / hypot(8.0, 5.0),
                                                      5.0 / hypot(8.0, 5.0) };
-            const double found = (with[f] - plain[f]) / size[f / DIG_FEATURE_BINS];
+            const double found = (dug.with[f] - dug.plain[f]) / dug.size[f / DIG_FEATURE_BINS];
             assert_close(found, truth * own[f / DIG_FEATURE_BINS],
-                         4.0 * MADE_SCATTER * sqrt(fmax(noise, 0.05)));
+                         4.0 * MADE_SCATTER * sqrt(fmax(dug.noise, 0.05)));
         }
-        assert_true(noise > 0.0 && noise < 0.5); // of 9 beds of 3 digs
+        assert_true(dug.noise > 0.0 && dug.noise < 0.5); // of 9 beds of 3 digs
     }
 }
 
@@ -55,12 +68,8 @@ TEST(terms_that_the_beds_do_not_ask_for_bring_no_noise)
 {
     const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
     for (size_t t = 0; t < MADE_TRAJECTORIES; t++) {
-        double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-        double noise = 0.0;
-        double known = 0.0;
-        plain_at(&gravel, t, place, plain, size);
-        memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, DIG_EFFECT_LAYERING, t, place, 0.5, 1.0, 1.0, plain, size, with, &noise);
+        const double noise = dig_with(&gravel, t, DIG_EFFECT_LAYERING, 0.5, 1.0, 1.0).noise;
+        double       known = 0.0;
         for (size_t e = 0; e < world.effects->entries; e++) {
             if (world.effects->entry[e].effect == DIG_EFFECT_LAYERING) {
                 known += (double)world.effects->packings[e * world.effects->trajectories + t] *
@@ -75,30 +84,17 @@ TEST(terms_that_the_beds_do_not_ask_for_bring_no_noise)
 TEST(a_contrast_multiplies_what_a_template_adds)
 {
     const struct dig_gravel gravel = { { 0.6, 0.5, 2500 } };
-    double                  place[DIG_AXES], plain[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-    double                  bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double                  feature[2][DIG_FEATURES];
-    double                  curve[2][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double                  noise[2] = { 0.0 };
-    plain_at(&gravel, MADE_ACTUAL, place, plain, size);
-    dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
-    for (int i = 0; i < 2; i++) {
-        const double contrast = i == 0 ? 1.0 : 0.4;
-        memcpy(feature[i], plain, sizeof plain);
-        memcpy(curve[i], bare, sizeof bare);
-        dig_soil_add(soil, DIG_EFFECT_LAYERING, MADE_ACTUAL, place, 0.5, contrast, 1.0, plain, size,
-                     feature[i], &noise[i]);
-        dig_soil_add_curve(soil, DIG_EFFECT_LAYERING, MADE_ACTUAL, place, 0.5, contrast, 1.0,
-                           (const double(*)[DIG_CURVE_POINTS])bare, curve[i]);
-    }
+    const struct dug one  = dig_with(&gravel, MADE_ACTUAL, DIG_EFFECT_LAYERING, 0.5, 1.0, 1.0);
+    const struct dug part = dig_with(&gravel, MADE_ACTUAL, DIG_EFFECT_LAYERING, 0.5, 0.4, 1.0);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        assert_close(feature[1][f] - plain[f], 0.4 * (feature[0][f] - plain[f]), 1e-12);
+        assert_close(part.with[f] - part.plain[f], 0.4 * (one.with[f] - one.plain[f]), 1e-12);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        assert_close(curve[1][0][k] - bare[0][k], 0.4 * (curve[0][0][k] - bare[0][k]), 1e-12);
+        assert_close(part.curve[0][k] - part.bare[0][k], 0.4 * (one.curve[0][k] - one.bare[0][k]),
+                     1e-12);
     }
-    assert_true(noise[1] > 0.0);
-    assert_close(noise[1], 0.16 * noise[0], 1e-12);
+    assert_true(part.noise > 0.0);
+    assert_close(part.noise, 0.16 * one.noise, 1e-12);
 }
 
 TEST(an_effect_that_is_absent_adds_nothing)
@@ -109,14 +105,10 @@ TEST(an_effect_that_is_absent_adds_nothing)
             !dig_soil_knows(soil, (enum dig_effect_id)e, MADE_SIMPLE_A)) {
             continue;
         }
-        double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-        double noise = 0.0;
-        plain_at(&gravel, MADE_SIMPLE_A, place, plain, size);
-        memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, (enum dig_effect_id)e, MADE_SIMPLE_A, place, 0.0, 1.0, 1.0, plain, size,
-                     with, &noise);
-        assert_memory_equal(with, plain, sizeof with);
-        assert_close(noise, 0.0, 0.0);
+        const struct dug dug =
+            dig_with(&gravel, MADE_SIMPLE_A, (enum dig_effect_id)e, 0.0, 1.0, 1.0);
+        assert_memory_equal(dug.with, dug.plain, sizeof dug.with);
+        assert_close(dug.noise, 0.0, 0.0);
         assert_close(dig_soil_magnitude(soil, (enum dig_effect_id)e, 0.0), soil->absent[e], 0.0);
     }
 }
@@ -127,20 +119,11 @@ TEST(features_are_those_of_the_curve)
                                                  DIG_EFFECT_WEAR };
     const struct dig_gravel         gravel   = { { 0.5, 0.7, 3000 } };
     for (size_t e = 0; e < sizeof effect / sizeof effect[0]; e++) {
-        double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-        double noise = 0.0, of_curve[DIG_FEATURES];
-        double bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        plain_at(&gravel, MADE_ACTUAL, place, plain, size);
-        memcpy(with, plain, sizeof with);
-        dig_soil_add(soil, effect[e], MADE_ACTUAL, place, 0.1, 1.0, 2.0, plain, size, with, &noise);
-        dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
-        memcpy(curve, bare, sizeof curve);
-        dig_soil_add_curve(soil, effect[e], MADE_ACTUAL, place, 0.1, 1.0, 2.0,
-                           (const double(*)[DIG_CURVE_POINTS])bare, curve);
-        dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
+        const struct dug dug = dig_with(&gravel, MADE_ACTUAL, effect[e], 0.1, 1.0, 2.0);
+        double           of_curve[DIG_FEATURES];
+        dig_features_of((const double(*)[DIG_CURVE_POINTS])dug.curve, of_curve);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            assert_close(with[f], of_curve[f], 1e-9 * size[f / DIG_FEATURE_BINS]);
+            assert_close(dug.with[f], of_curve[f], 1e-9 * dug.size[f / DIG_FEATURE_BINS]);
         }
     }
 }
@@ -149,25 +132,17 @@ TEST(features_are_those_of_the_curve)
 TEST(the_tooths_speed_tells_features_as_it_tells_the_curve)
 {
     const struct dig_gravel gravel = { { 0.5, 0.7, 3000 } };
-    double place[DIG_AXES], plain[DIG_FEATURES], with[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
-    double noise = 0.0, of_curve[DIG_FEATURES];
-    double bare[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    soil->along = 1.0;
-    plain_at(&gravel, MADE_ACTUAL, place, plain, size);
-    memcpy(with, plain, sizeof with);
-    dig_soil_add(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 1.0, 0.0, plain, size,
-                 with, &noise);
-    dig_response_surface_curve(world.surface, MADE_ACTUAL, place, bare);
-    memcpy(curve, bare, sizeof curve);
-    dig_soil_add_curve(soil, DIG_EFFECT_RATE_DEPENDENCE, MADE_ACTUAL, place, 0.3, 1.0, 0.0,
-                       (const double(*)[DIG_CURVE_POINTS])bare, curve);
+    double                  of_curve[DIG_FEATURES];
+    double                  most = 0.0;
+    soil->along                  = 1.0;
+    const struct dug dug =
+        dig_with(&gravel, MADE_ACTUAL, DIG_EFFECT_RATE_DEPENDENCE, 0.3, 1.0, 0.0);
     soil->along = 0.0;
-    dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, of_curve);
-    double most = 0.0;
+    dig_features_of((const double(*)[DIG_CURVE_POINTS])dug.curve, of_curve);
     for (size_t f = 0; f < DIG_FEATURES; f++) {
-        assert_close(with[f], of_curve[f], 0.01 * size[f / DIG_FEATURE_BINS]);
-        most = fmax(most, fabs(with[f] - plain[f]) / size[f / DIG_FEATURE_BINS]);
+        const double size = dug.size[f / DIG_FEATURE_BINS];
+        assert_close(dug.with[f], of_curve[f], 0.01 * size);
+        most = fmax(most, fabs(dug.with[f] - dug.plain[f]) / size);
     }
     assert_true(most > 0.05);
 }

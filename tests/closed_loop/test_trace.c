@@ -41,11 +41,24 @@ static enum dig_status run(struct dig_trace *const trace, struct dig_error *cons
                          error);
 }
 
+static struct dig_trace trace; // of the campaign traced last
+
+static void trace_campaign(void)
+{
+    dig_trace_finish(&trace);
+    assert_int_equal(run(&trace, NULL), DIG_OK);
+}
+
+static int tear_down(void **state)
+{
+    dig_trace_finish(&trace);
+    return world_teardown(state);
+}
+
 TEST(adding_the_effect_makes_the_holdout_better)
 {
-    struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_LAYERING, 0.8, 31);
-    assert_int_equal(run(&trace, NULL), DIG_OK);
+    trace_campaign();
     assert_true(trace.significant);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LAYERING);
@@ -58,17 +71,15 @@ TEST(adding_the_effect_makes_the_holdout_better)
     assert_true(trace.after.value < 2.0 * trace.noise_floor);
     assert_true(isnan(trace.residual[DIG_PART_AIR]));
     assert_true(trace.candidate[0].effect == DIG_EFFECT_LAYERING);
-    dig_trace_finish(&trace);
 }
 
 // Of two holdouts: the root of the mean square of their own errors, as near as they are of one
 // size.
 TEST(what_is_left_is_told_dig_by_dig)
 {
-    struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_COHESION, 0.8, 31);
     (void)snprintf(measured[5].name, sizeof measured[5].name, "five.csv");
-    assert_int_equal(run(&trace, NULL), DIG_OK);
+    trace_campaign();
     assert_int_equal(trace.effects, 1);
     const struct dig_residuals *const r = trace.residuals;
     assert_non_null(r);
@@ -97,14 +108,12 @@ TEST(what_is_left_is_told_dig_by_dig)
     assert_true(path->slope < 0.0 && path->p < 0.01);
     assert_int_equal(path->bin[0].digs, DIGS - 2);
     assert_true(isnan(r->trend[DIG_CHANNEL_MY_Nm][DIG_REGRESSOR_PASS].slope));
-    dig_trace_finish(&trace);
 }
 
 TEST(without_an_effect_before_and_after_are_the_same)
 {
-    struct dig_trace trace;
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 32);
-    assert_int_equal(run(&trace, NULL), DIG_OK);
+    trace_campaign();
     assert_false(trace.significant);
     assert_int_equal(trace.effects, 0);
     assert_close(trace.after.value, trace.before.value, 1e-12);
@@ -113,47 +122,37 @@ TEST(without_an_effect_before_and_after_are_the_same)
     assert_memory_equal(&trace.low_before, &trace.low, sizeof trace.low);
     assert_memory_equal(&trace.high_before, &trace.high, sizeof trace.high);
     assert_null(trace.unlisted);
-    dig_trace_finish(&trace);
 }
 
 // It is no effect, and the prediction is made with it all the same.
 TEST(a_gravel_beyond_the_grid_is_said_to_be_that)
 {
-    struct dig_trace        trace;
     const struct dig_gravel beyond = { { 0.25, 0.05, 1200.0 } };
     campaign_of(&beyond, 0, DIG_EFFECT_LAYERING, 0.0, 35);
-    assert_int_equal(run(&trace, NULL), DIG_OK);
+    trace_campaign();
     assert_true(trace.beyond && trace.applied);
     assert_false(trace.significant);
     assert_int_equal(trace.effects, 0);
     assert_true(trace.after.value < trace.before.value);
-    dig_trace_finish(&trace);
 }
 
 TEST(what_has_no_name_is_corrected_all_the_same)
 {
-    struct dig_trace trace;
     dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
-    assert_int_equal(run(&trace, NULL), DIG_OK);
+    trace_campaign();
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_non_null(trace.unlisted);
     assert_true(trace.unlisted->depends_on[0] != '\0');
+    assert_true(trace.effect[0].probability > 0.95);
     assert_true(trace.after.value < 0.7 * trace.before.value);
-    dig_trace_finish(&trace);
 }
 
 // Without a name as with one: no more than even odds are claimed for what the moment hardly shows.
 TEST(what_the_moment_does_not_show_is_not_claimed)
 {
-    struct dig_trace trace;
-    dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
-    assert_int_equal(run(&trace, NULL), DIG_OK);
-    assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
-    assert_true(trace.effect[0].probability > 0.95);
-    dig_trace_finish(&trace);
-
     static struct dig_measured in_forces[DIGS];
+    dig_campaign(1, DIG_EFFECT_UNLISTED, 1.2, 33);
     memcpy(in_forces, measured, sizeof in_forces);
     dig_campaign(0, DIG_EFFECT_UNLISTED, 0.0, 33);
     for (size_t i = 0; i < DIGS; i++) {
@@ -161,12 +160,11 @@ TEST(what_the_moment_does_not_show_is_not_claimed)
                sizeof in_forces[i].value[DIG_CHANNEL_MY_Nm]);
     }
     memcpy(measured, in_forces, sizeof in_forces);
-    assert_int_equal(run(&trace, NULL), DIG_OK);
+    trace_campaign();
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_true(trace.significant && trace.p_complete < 0.01);
     assert_true(trace.effect[0].probability <= 0.5);
-    dig_trace_finish(&trace);
 }
 
 // What the machine adds is taken off the digs and put back on the prediction.
@@ -195,29 +193,29 @@ TEST(the_machines_share_is_the_machines)
 
 TEST(too_few_digs_are_refused_and_nothing_is_written)
 {
-    struct dig_trace trace = { .digs = 42 };
+    struct dig_trace none  = { .digs = 42 };
     struct dig_error error = { "" };
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 35);
     for (size_t i = 1; i < DIGS; i++) {
         measured[i].use = DIG_USE_HOLDOUT;
     }
-    assert_refused(run(&trace, &error), error, DIG_EINVAL, "expected two or more");
+    assert_refused(run(&none, &error), error, DIG_EINVAL, "expected two or more");
     measured[1].use        = DIG_USE_FIT;
     measured[1].trajectory = 7;
-    assert_int_equal(run(&trace, &error), DIG_EINVAL);
-    assert_int_equal(trace.digs, 42);
+    assert_int_equal(run(&none, &error), DIG_EINVAL);
+    assert_int_equal(none.digs, 42);
 }
 
 TEST(another_scenes_effects_are_refused)
 {
-    struct dig_trace trace = { .digs = 42 };
+    struct dig_trace none  = { .digs = 42 };
     struct dig_error error = { "" };
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 36);
     world.effects->scene_hash[0] ^= 1;
-    assert_int_equal(run(&trace, &error), DIG_EINVAL);
+    assert_int_equal(run(&none, &error), DIG_EINVAL);
     world.effects->scene_hash[0] ^= 1;
     assert_contains(error.text, "another scene");
-    assert_int_equal(trace.digs, 42);
+    assert_int_equal(none.digs, 42);
 }
 
 // A dig held out decides nothing: another holdout, the same verdict and gravel.
@@ -242,9 +240,8 @@ TEST(the_holdout_is_for_the_error_alone)
 TEST(without_a_table_of_effects_strange_digs_are_found)
 {
     struct dig_trace_settings settings = dig_trace_settings_default();
-    struct dig_trace          trace;
-    struct dig_error          error = { "" };
-    settings.bootstraps             = 24;
+    struct dig_error          error    = { "" };
+    settings.bootstraps                = 24;
     dig_campaign(0, DIG_EFFECT_UNLISTED, 0.0, 17);
     for (size_t i = 0; i < DIGS; i++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
@@ -256,12 +253,12 @@ TEST(without_a_table_of_effects_strange_digs_are_found)
             }
         }
     }
+    dig_trace_finish(&trace);
     assert_int_equal(
         dig_trace_run(world.set, NULL, NULL, &settings, NULL, FEW, measured, &trace, &error),
         DIG_OK);
     assert_true(trace.significant);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
-    dig_trace_finish(&trace);
 }
 
-TESTS_WITH(world_setup, world_teardown)
+TESTS_WITH(world_setup, tear_down)
