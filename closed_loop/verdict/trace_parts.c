@@ -181,10 +181,6 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
         const struct dig_measured *const dig        = &w->measured[i];
         const size_t                     trajectory = (size_t)dig->trajectory;
         struct dig_trace_curves *const   c          = &curves[i];
-        memset(c, 0, sizeof *c);
-        if (!w->surface->known[trajectory]) {
-            continue;
-        }
         dig_fitted_curve(w->soil, before, dig, c->before);
         dig_judge_sd(w->surface, w->scatter, trajectory, before->number, noise_of(w, before, dig),
                      c->before_sd);

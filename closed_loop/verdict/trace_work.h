@@ -109,7 +109,7 @@ struct dig_model_effect dig_trace_rock(const struct dig_rock *rock, double proba
 enum dig_part dig_trace_seen_in(const struct dig_trace_work *w, const struct dig_fitted *fitted,
                                 size_t effect);
 
-/// Curves before and after of all digs; unlisted (NULL: none) is added after.
+/// Curves before and after of all digs, zeroed; unlisted (NULL: none) is added after.
 void dig_trace_fill_curves(const struct dig_trace_work     *w,
                            const struct dig_model_unlisted *unlisted,
                            struct dig_trace_curves          curves[]);
