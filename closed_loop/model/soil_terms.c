@@ -43,9 +43,11 @@ void dig_soil_terms_choose(const size_t beds, const struct dig_soil_at at[],
     assert(beds > 0 && at != NULL && template != NULL);
     const double least     = next(beds, at, false, -INFINITY);
     double       most      = least;
+    double       s         = least;
     size_t       strengths = 0;
-    for (double s = least; isfinite(s); s = next(beds, at, false, s)) {
+    while (isfinite(s)) {
         most = s;
+        s    = next(beds, at, false, s);
         strengths++;
     }
     template->powers = strengths < DIG_SOIL_POWERS ? strengths : DIG_SOIL_POWERS;
@@ -56,11 +58,13 @@ void dig_soil_terms_choose(const size_t beds, const struct dig_soil_at at[],
     double knot[DIG_SOIL_KNOTS] = { 0.0 };
     size_t knots                = 1;
     size_t magnitudes           = 0;
-    for (double u = next(beds, at, true, -INFINITY); isfinite(u); u = next(beds, at, true, u)) {
+    double u                    = next(beds, at, true, -INFINITY);
+    while (isfinite(u)) {
         magnitudes++;
         if (knots < DIG_SOIL_KNOTS && is_of_two_gravels(beds, at, u)) {
             knot[knots++] = u;
         }
+        u = next(beds, at, true, u);
     }
     dig_sort(knots, knot);
     template->knots = knots > 2 ? knots : 0;
