@@ -41,8 +41,9 @@ void dig_residual_of(const struct dig_curve_set *const set, const struct dig_mea
     const size_t trajectory                          = (size_t)dig->trajectory;
     const double(*const predicted)[DIG_CURVE_POINTS] = after ? curves->after : curves->before;
     const double(*const sd)[DIG_CURVE_POINTS]        = after ? curves->after_sd : curves->before_sd;
-    struct integral part[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS] = { { { .wrong2 = 0.0 } } };
-    double          whole2[DIG_FORCE_CHANNELS]                 = { 0.0 };
+    struct integral part[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
+    double          whole2[DIG_FORCE_CHANNELS] = { 0.0 };
+    memset(part, 0, sizeof part);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress = (double)k / (DIG_CURVE_POINTS - 1);
         if (progress < dig->first || progress > dig->last) {
