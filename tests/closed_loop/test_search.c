@@ -3,7 +3,6 @@
 #include "tests/closed_loop/world_fixture.h"
 #include "tests/model_front.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 6, DRAWS = 24 };
@@ -79,11 +78,11 @@ TEST(nothing_is_found_where_nothing_is)
 TEST(digs_are_drawn_with_the_noise_of_their_sensors)
 {
     enum { MANY = 40 };
-    const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
-    struct dig_measured      *loud   = calloc(MANY, sizeof *loud);
-    struct dig_whitened_digs *drawn  = malloc(2 * sizeof *drawn);
-    struct dig_common_error   error[DIG_TRAJECTORY_MAX];
-    uint64_t                  seed = 5;
+    const struct dig_gravel         gravel = { { 0.6, 0.55, 2500 } };
+    static struct dig_measured      loud[MANY];
+    static struct dig_whitened_digs drawn[2];
+    struct dig_common_error         error[DIG_TRAJECTORY_MAX];
+    uint64_t                        seed = 5;
     dig_in_turn(MANY, &gravel, 0, NULL, NULL, &seed, loud);
     for (size_t i = 0; i < MANY; i++) {
         dig_add_noise(3.0, &seed, &loud[i]);
@@ -97,8 +96,6 @@ TEST(digs_are_drawn_with_the_noise_of_their_sensors)
         const double freedom = (double)(drawn->group[g].features * (drawn->group[g].digs - 1));
         assert_close(drawn[1].group[g].about / freedom, 1.0, 5.0 * sqrt(2.0 / freedom) + 0.05);
     }
-    free(drawn);
-    free(loud);
 }
 
 TEST(an_effect_is_named_and_measured)
