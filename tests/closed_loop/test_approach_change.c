@@ -124,6 +124,7 @@ TEST_WITH(of_a_gravel_that_the_table_lacks_the_change_is_that_of_others, set_up,
     const struct dig_gravel lacking = table.cube.gravel[3];
     double                  own[DIG_FEATURES];
     double                  others[DIG_FEATURES];
+    double                  mean[DIG_FEATURES];
     assert_int_equal(dig_depth_change(&table.cube.set, 0, &lacking, own), DIG_OK);
     table.cube.packings[2 * 3] = 0;
     assert_int_equal(dig_depth_change(&table.cube.set, 0, &lacking, others), DIG_OK);
@@ -131,6 +132,8 @@ TEST_WITH(of_a_gravel_that_the_table_lacks_the_change_is_that_of_others, set_up,
         assert_close(others[b], own[b], 0.05);
     }
     assert_true(own[4] > 0.1);
+    assert_int_equal(dig_depth_change(&table.cube.set, 0, NULL, mean), DIG_OK);
+    assert_memory_equal(mean, others, sizeof mean);
 }
 
 TEST_WITH(a_table_of_one_depth_has_none, set_up, NULL)
