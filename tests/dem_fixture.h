@@ -63,11 +63,12 @@ static inline struct dig_scene dem_short_dig_scene(const double drag_s)
     return scene;
 }
 
-/// Grains of two sizes under Hertz's law that stick to each other and to a bucket smoother than
-/// they.
+/// Grains of two sizes under Hertz's law and CDT that stick to each other and to a bucket smoother
+/// than they.
 static inline void dem_mix_sticky_grains(struct dig_scene *const scene)
 {
     scene->laws        = (struct dig_laws){ .normal            = DIG_NORMAL_HERTZ,
+                                            .rolling           = DIG_ROLLING_CDT,
                                             .cohesion_Jpm3     = 2e4,
                                             .adhesion_Jpm3     = 1e4,
                                             .bucket_smoothness = 0.6 };

@@ -8,6 +8,15 @@
 
 #include <stdlib.h>
 
+/// A kind of sphere.
+static inline struct dig_grain_type dem_sphere(const double radius_m, const double density_kgpm3)
+{
+    const double kg = density_kgpm3 * 4.0 / 3.0 * DIG_PI * radius_m * radius_m * radius_m;
+    return (struct dig_grain_type){ .radius_m     = radius_m,
+                                    .mass_kg      = kg,
+                                    .inertia_kgm2 = 0.4 * kg * radius_m * radius_m };
+}
+
 /// n spheres at rest at (x, y, z), a type for each radius. Status as dig_grains_create().
 static inline enum dig_status dem_create_grains(const size_t n, const double x_m[],
                                                 const double y_m[], const double z_m[],
@@ -22,7 +31,6 @@ static inline enum dig_status dem_create_grains(const size_t n, const double x_m
     }
     for (size_t i = 0; i < n; i++) {
         const double r_m = radius_m[i];
-        const double kg  = density_kgpm3 * 4.0 / 3.0 * DIG_PI * r_m * r_m * r_m;
         size_t       k   = 0;
         while (k < types && (type[k].radius_m < r_m || type[k].radius_m > r_m)) {
             k++;
@@ -31,9 +39,7 @@ static inline enum dig_status dem_create_grains(const size_t n, const double x_m
             free(of);
             return DIG_EINVAL;
         }
-        type[k] = (struct dig_grain_type){ .radius_m     = r_m,
-                                           .mass_kg      = kg,
-                                           .inertia_kgm2 = 0.4 * kg * r_m * r_m };
+        type[k] = dem_sphere(r_m, density_kgpm3);
         types += k == types;
         of[i] = (uint8_t)k;
     }

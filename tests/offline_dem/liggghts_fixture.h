@@ -68,6 +68,7 @@ struct tolerance {
 static inline void follow(struct dig_world *const world, const char *const path,
                           const struct tolerance tolerance)
 {
+    print_message("%s\n", path);
     struct table *const         table = read_table(path);
     const struct dig_grain_type type  = world->grains.type[world->grains.type_of[0]];
     assert_true(table->rows > 40 && table->columns == 16);

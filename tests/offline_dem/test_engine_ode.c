@@ -39,10 +39,14 @@ TEST(a_short_dig_gives_the_kernels_curve)
     digs_agree(&scene);
 }
 
-TEST(a_short_dig_in_mixed_sticky_grains_gives_the_kernels_curve)
+TEST(a_short_dig_in_mixed_sticky_grains_over_a_heavy_layer_gives_the_kernels_curve)
 {
     struct dig_scene scene = dem_short_dig_scene(0.02);
     dem_mix_sticky_grains(&scene);
+    scene.bed.materials   = 1;
+    scene.bed.material[0] = (struct dig_other_material){ "heavy", 0.9, 0.9, 4000.0, 0.2 };
+    scene.bed.layers      = 1;
+    scene.bed.layer[0]    = (struct dig_layer){ 1, 0.0, 0.015 };
     digs_agree(&scene);
 }
 

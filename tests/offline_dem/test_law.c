@@ -36,21 +36,6 @@ TEST(two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall)
     assert_close(pair.reach_m, 2.0 * GRAIN_m, 1e-15);
 }
 
-TEST(no_touch_is_no_force_and_no_memory)
-{
-    const struct dig_law_material    m   = dem_material(0.5, 0.5);
-    const struct dig_law             law = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
-    struct dig_contact_history       history = { 1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5 };
-    const struct dig_kinematics      apart   = { .dx_m     = 2.0001 * GRAIN_m,
-                                                 .vx_mps   = -1.0,
-                                                 .iy_radps = 5.0 };
-    const struct dig_contact_force   push    = dig_law_step(law, STEP_s, apart, &history);
-    const struct dig_contact_force   none    = { 0 };
-    const struct dig_contact_history blank   = { 0 };
-    assert_memory_equal(&push, &none, sizeof push);
-    assert_memory_equal(&history, &blank, sizeof history);
-}
-
 // However far it slips, friction is mu |F_n|; however far it rolls, the torque is mu_r R* |F_n|.
 TEST(friction_and_rolling_torque_are_capped)
 {

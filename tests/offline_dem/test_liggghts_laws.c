@@ -26,10 +26,7 @@ static void meet_pair(const struct dig_law_material m, const char *const path)
     // dem_world() makes like grains: the second is another kind, and their law is made anew.
     struct dig_grains *const g = &world.grains;
     g->types                   = 2;
-    g->type[1]                 = g->type[0];
-    g->type[1].radius_m        = LARGE_m;
-    g->type[1].mass_kg         = BIG_KGPM3 * 4.0 / 3.0 * DIG_PI * LARGE_m * LARGE_m * LARGE_m;
-    g->type[1].inertia_kgm2    = 0.4 * g->type[1].mass_kg * LARGE_m * LARGE_m;
+    g->type[1]                 = dem_sphere(LARGE_m, BIG_KGPM3);
     g->type_of[1]              = 1;
     dem_set_material(&world, &m);
     world.dt_s = FINE_s;
@@ -54,28 +51,12 @@ static void meet_wall(const struct dig_law_material m, const char *const path)
     dig_world_finish(&world);
 }
 
-TEST(unlike_grains_meet_as_in_liggghts)
+TEST(unlike_grains_meet_as_in_liggghts_under_each_law_and_all_together)
 {
     meet_pair(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_EPSD2, 0.0), FOLDER "pair_unlike.csv");
-}
-
-TEST(grains_under_hertz_meet_as_in_liggghts)
-{
     meet_pair(unlike(DIG_NORMAL_HERTZ, DIG_ROLLING_EPSD2, 0.0), FOLDER "pair_hertz.csv");
-}
-
-TEST(grains_under_cdt_meet_as_in_liggghts)
-{
     meet_pair(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_CDT, 0.0), FOLDER "pair_cdt.csv");
-}
-
-TEST(cohesive_grains_meet_as_in_liggghts)
-{
     meet_pair(unlike(DIG_NORMAL_HOOKE, DIG_ROLLING_EPSD2, COHESION), FOLDER "pair_sjkr.csv");
-}
-
-TEST(all_laws_together_are_those_of_liggghts)
-{
     meet_pair(unlike(DIG_NORMAL_HERTZ, DIG_ROLLING_CDT, COHESION),
               FOLDER "pair_hertz_cdt_sjkr.csv");
 }
@@ -99,10 +80,7 @@ static struct dig_world mixed_cluster(const struct table *const start)
     struct dig_grains *const g     = &world.grains;
     g->types                       = 3;
     for (size_t k = 0; k < 3; k++) {
-        const double kg = DENSITY * 4.0 / 3.0 * DIG_PI * r[k] * r[k] * r[k];
-        g->type[k]      = (struct dig_grain_type){ .radius_m     = r[k],
-                                                   .mass_kg      = kg,
-                                                   .inertia_kgm2 = 0.4 * kg * r[k] * r[k] };
+        g->type[k] = dem_sphere(r[k], DENSITY);
     }
     for (size_t i = 0; i < start->rows; i++) {
         g->type_of[i]         = (uint8_t)((i + 1) % 3);
