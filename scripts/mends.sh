@@ -17,7 +17,7 @@ an error is one line, whatever it quotes|core/error.c|s/(c = strpbrk(c, .*)) != 
 a link in a folder of jobs is not followed|tools/digtable/job_folder.c|s/: !S_ISREG(is.st_mode)/: false/|digtable/test_job_folder
 a path stays in its folder|core/name.c|s/return !up;/return true;/|core/test_name
 a recording of a campaign stays in its folder|files/campaign_yaml.c|s/!dig_path_stays(name)/false/|files/test_campaign_yaml
-no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|firmware_host/test_hostile_texts
+no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|core/test_text
 nor by the name of a file|core/text.c|s/^    dig_text_clean(text);/    (void)text;/|core/test_text
 no table but our own, no trigger, no view|tables/schema/guard.c|s/status = compare(.*;/status = DIG_OK;/|tables/test_hostile
 a schema is ours word for word|tables/schema/guard.c|s/strcmp(text_at(found, 3), text_at(expected, 3)) != 0/false/|tables/test_hostile

@@ -1,9 +1,9 @@
 // Every writer of ours, given texts that mean harm where they end up: what it writes is whole, is
-// printable UTF-8, runs nothing, and is read back or refused by name.
+// printable UTF-8, and is read back or refused by name. What a terminal and a shell are given:
+// tests/core/test_text.c and test_shell.c.
 
 #include "closed_loop/report/html.h"
 #include "core/name.h"
-#include "core/shell.h"
 #include "core/text.h"
 #include "files/identity_json.h"
 #include "files/lcm/lcm_log.h"
@@ -223,28 +223,6 @@ TEST(no_run_with_such_an_engine_is_stored_for_an_export_to_print)
         assert_printable(error.text);
     }
     dig_store_close(store);
-}
-
-TEST(a_shell_line_is_one_printable_word)
-{
-    for (size_t i = 0; i < TEXTS; i++) {
-        char word[8192];
-        assert_true(dig_shell_word(hostile[i], sizeof word, word) < sizeof word);
-        assert_printable(word);
-    }
-}
-
-TEST(a_terminal_gets_one_line_without_escape_sequences)
-{
-    for (size_t i = 0; i < TEXTS; i++) {
-        struct dig_error error = { "" };
-        char *const      line  = written(dig_text_put, hostile[i]);
-        assert_printable(line);
-        assert_null(strpbrk(line, "\n\t\r\x1b"));
-        free(line);
-        (void)dig_error_set(&error, DIG_EINVAL, "\"%s\", expected another", hostile[i]);
-        assert_printable(error.text);
-    }
 }
 
 static void on_health(void *const context, const int64_t time_us, const digsight_health_t *const m)

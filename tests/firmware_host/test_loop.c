@@ -2,7 +2,6 @@
 
 #include "firmware_host/tick/loop.h"
 
-#include "tests/count_allocations.h"
 #include "tests/firmware_host/loop_bench.h"
 
 #include <pthread.h>
@@ -156,39 +155,6 @@ TEST(nothing_is_predicted_from_a_gravel_that_expired)
     bench_set_basis(b, &b->wires.basis, 3, 1, 2000 * MS);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 2, 3);
     assert_int_equal(outlooks_in_the_air(b, 3000, seen), 0);
-    bench_destroy(b);
-}
-
-TEST(a_tick_allocates_nothing)
-{
-    skip_unless_allocations_count();
-    struct bench *const b = bench_create();
-    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
-    unsigned long in_ticks = 0;
-    int           digs     = 0;
-    for (int64_t i = 0; i < 2000; i++) {
-        struct dig_reading r = bench_still(1000 * MS + i * 5 * MS);
-
-        // Pressures that come and go, so that digs begin and end.
-        r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
-        (void)dig_ring_push(&b->wires.readings, &r);
-        if (i % 100 == 0) {
-            bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
-        }
-        const unsigned long before = allocations;
-        dig_loop_tick(&b->loop, 1000 * MS + i * 5 * MS);
-        in_ticks += allocations - before;
-
-        struct dig_recorded_dig *raw = NULL;
-        if (dig_ring_pop(&b->wires.digs, &raw)) {
-            digs++;
-            assert_true(dig_ring_push(&b->wires.spares, &raw));
-        }
-    }
-    assert_true(in_ticks == 0);
-    assert_true(b->loop.tick_status.digs > 1);
-    assert_int_equal(digs, b->loop.tick_status.digs);
-    assert_int_equal(b->loop.tick_status.lost_digs, 0);
     bench_destroy(b);
 }
 
