@@ -5,10 +5,12 @@
 
 #include "core/error.h"
 #include "core/observation.h"
+#include "core/outline.h"
 #include "tables/derive.h"
 #include "tables/load.h"
 #include "tables/store.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { TABLE_RUNS_MAX = 800 };
@@ -111,6 +113,40 @@ static inline size_t table_runs_without(const struct table_runs *const all, cons
         memcpy(curve->sd, whole.sd, sizeof curve->sd);
     }
     return rest.packings;
+}
+
+/// Shows each run whose entry has others to visit(), while the entry is what it would be without
+/// it.
+static inline void table_runs_leave_out_each(struct table_runs *const all,
+                                             void (*const visit)(void                   *context,
+                                                                 const struct table_run *left),
+                                             void *const context)
+{
+    for (size_t i = 0; i < all->runs; i++) {
+        const size_t            slot  = table_run_slot(all, &all->run[i]);
+        struct dig_curve *const curve = &all->set->curve[slot];
+        const struct dig_curve  whole = *curve;
+        if (table_runs_without(all, i, curve) > 0) {
+            all->set->packings[slot]--;
+            dig_outlines_draw(all->set);
+            visit(context, &all->run[i]);
+            all->set->packings[slot]++;
+            *curve = whole;
+        }
+    }
+}
+
+/// How far a moment is off the truth's, relative.
+static inline double table_runs_off(const struct dig_curve *const is,
+                                    const struct dig_curve *const truth)
+{
+    double miss2 = 0.0, whole2 = 0.0;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double t = (double)truth->mean[DIG_CHANNEL_MY_Nm][k];
+        miss2 += pow((double)is->mean[DIG_CHANNEL_MY_Nm][k] - t, 2.0);
+        whole2 += t * t;
+    }
+    return sqrt(miss2 / whole2);
 }
 
 /// The run as a whole dig was observed, without noise; by its moment alone unless forces is set.

@@ -15,6 +15,7 @@
 
 #include "estimator/match/match.h"
 #include "core/outline.h"
+#include "core/sort.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/entry_scatter.h"
 #include "estimator/match/pool.h"
@@ -225,16 +226,9 @@ static void match_once(const struct dig_curve_set *const set, const struct dig_o
     note(refined, cpu_ms() - told);
 }
 
-static int compare(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void print(const char *const kind, const size_t entries, struct times *const t)
 {
-    qsort(t->ms, t->digs, sizeof t->ms[0], compare);
+    dig_sort(t->digs, t->ms);
     (void)printf("%s %zu %zu %.2f %.2f\n", kind, entries, t->digs, t->ms[t->digs / 2],
                  t->ms[t->digs - 1]);
 }

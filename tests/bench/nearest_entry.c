@@ -8,7 +8,6 @@
 //
 //   nearest_entry TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY
 
-#include "core/outline.h"
 #include "estimator/match/gaussian.h"
 #include "estimator/match/match.h"
 #include "estimator/match/pool.h"
@@ -66,23 +65,16 @@ static size_t weighted(const struct bench *const b, const struct dig_observation
     return (size_t)match.weighted;
 }
 
-// Relative, of a moment along the other trajectory against that of an entry.
+// Of a moment along the other trajectory against that of an entry.
 static double off_by(const struct bench *const b, const struct dig_curve *const is,
                      const size_t truth)
 {
-    const struct dig_curve *const should = &b->all.set->curve[slot_of(b, truth, b->other)];
-    double                        miss2  = 0.0;
-    double                        whole2 = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double t = (double)should->mean[DIG_CHANNEL_MY_Nm][k];
-        miss2 += pow((double)is->mean[DIG_CHANNEL_MY_Nm][k] - t, 2.0);
-        whole2 += t * t;
-    }
-    return sqrt(miss2 / whole2);
+    return table_runs_off(is, &b->all.set->curve[slot_of(b, truth, b->other)]);
 }
 
-static void judge(struct bench *const b, const struct table_run *const run)
+static void judge(void *const context, const struct table_run *const run)
 {
+    struct bench *const    b   = context;
     struct dig_observation dig = table_run_observed(run);
     struct dig_match       match;
     if (dig_match_nearest(b->all.set, 1, &dig, 2.5, &match) != DIG_OK) {
@@ -104,22 +96,6 @@ static void judge(struct bench *const b, const struct table_run *const run)
     b->predicted_off += told ? off_by(b, &predicted, run->entry) : (double)NAN;
 }
 
-// The table without the dig. A single one that is left has the entry's spread.
-static void leave_out(struct bench *const b, const size_t left)
-{
-    const size_t            slot  = table_run_slot(&b->all, &b->all.run[left]);
-    struct dig_curve *const curve = &b->all.set->curve[slot];
-    const struct dig_curve  whole = *curve;
-    if (table_runs_without(&b->all, left, curve) == 0) {
-        return;
-    }
-    b->all.set->packings[slot]--;
-    dig_outlines_draw(b->all.set);
-    judge(b, &b->all.run[left]);
-    b->all.set->packings[slot]++;
-    *curve = whole;
-}
-
 int main(const int argc, char *argv[])
 {
     struct dig_error    error = { "TABLE.sqlite TRAJECTORY OTHER_TRAJECTORY" };
@@ -128,9 +104,7 @@ int main(const int argc, char *argv[])
     if (argc == 4 && b != NULL && table_runs_read(argv[1], argv[2], &b->all, &error) == DIG_OK) {
         b->other = table_runs_trajectory(b->all.set, argv[3]);
         if (b->other < b->all.set->trajectories) {
-            for (size_t i = 0; i < b->all.runs; i++) {
-                leave_out(b, i);
-            }
+            table_runs_leave_out_each(&b->all, judge, b);
             for (int w = 0; w < WAYS; w++) {
                 printf("%-36s %4zu digs, their own entry %3zu (%2.0f %%), the other dig off by "
                        "%.3f in the mean\n",

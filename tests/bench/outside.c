@@ -60,14 +60,7 @@ static double error_of(const struct bench *const b, const struct dig_curve_set *
         dig_predict_curve(set, match, b->other, &predicted) != DIG_OK) {
         return (double)NAN;
     }
-    const float *const truth  = b->all.set->curve[slot].mean[DIG_CHANNEL_MY_Nm];
-    double             miss2  = 0.0;
-    double             whole2 = 0.0;
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        miss2 += pow((double)predicted.mean[DIG_CHANNEL_MY_Nm][k] - (double)truth[k], 2.0);
-        whole2 += pow((double)truth[k], 2.0);
-    }
-    return sqrt(miss2 / whole2);
+    return table_runs_off(&predicted, &b->all.set->curve[slot]);
 }
 
 static void judge(const struct bench *const b, const struct dig_curve_set *const set,
@@ -131,26 +124,23 @@ static void add(struct tally *const sum, const struct tally *const more)
     sum->by_forces += more->by_forces;
 }
 
+struct inside {
+    struct bench *bench;
+    struct tally  tally;
+};
+
+static void judge_left(void *const context, const struct table_run *const left)
+{
+    struct inside *const in = context;
+    judge(in->bench, in->bench->all.set, left, &in->tally);
+}
+
 // Each dig against its entry without it. A single dig that is left has the entry's spread.
 static void look_inside(struct bench *const b)
 {
-    struct tally tally = { .digs = 0 };
-    for (size_t left = 0; left < b->all.runs; left++) {
-        const size_t      slot  = table_run_slot(&b->all, &b->all.run[left]);
-        struct dig_curve *curve = &b->all.set->curve[slot];
-        const int         all   = b->all.set->packings[slot];
-        if (all < 2) {
-            continue;
-        }
-        const struct dig_curve whole = *curve;
-        (void)table_runs_without(&b->all, left, curve);
-        b->all.set->packings[slot] = all - 1;
-        dig_outlines_draw(b->all.set);
-        judge(b, b->all.set, &b->all.run[left], &tally);
-        b->all.set->packings[slot] = all;
-        *curve                     = whole;
-    }
-    tell("inside", &tally);
+    struct inside in = { .bench = b };
+    table_runs_leave_out_each(&b->all, judge_left, &in);
+    tell("inside", &in.tally);
 }
 
 static bool is_on_face(const struct bench *const b, const size_t entry, const int axis,

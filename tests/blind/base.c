@@ -13,8 +13,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static void become(char *const argv[], const char *const output, const unsigned limit_s)
+#define WORDS_MAX 16 // of a command
+
+static void become(const char *const argv[], const char *const output, const unsigned limit_s)
 {
+    // execv() takes pointers to what it does not change.
+    char  *words[WORDS_MAX];
+    size_t n = 0;
+    while (argv[n] != NULL && n + 1 < WORDS_MAX) {
+        n++;
+    }
+    memcpy(words, argv, (n + 1) * sizeof *argv);
     const struct rlimit limit = { limit_s, limit_s + 1 };
     (void)setrlimit(RLIMIT_CPU, &limit);
     const int fd = open(output, O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -23,7 +32,7 @@ static void become(char *const argv[], const char *const output, const unsigned 
         (void)dup2(fd, STDERR_FILENO);
         (void)close(fd);
     }
-    (void)execv(argv[0], argv);
+    (void)execv(words[0], words);
     _exit(127);
 }
 
@@ -42,7 +51,7 @@ static double seconds(const struct rusage *const u)
            1e-6 * ((double)u->ru_utime.tv_usec + (double)u->ru_stime.tv_usec);
 }
 
-int blind_spawn(char *const argv[], const char *const output, const unsigned limit_s,
+int blind_spawn(const char *const argv[], const char *const output, const unsigned limit_s,
                 double *const cpu_s, double *const peak_B)
 {
     const struct rusage before = used();
@@ -142,7 +151,7 @@ static void place_dig(struct blind_base *const base, const double My[],
 }
 
 // Makes the two files unless they are there; one process at a time a name.
-static enum dig_status run_digrig(char *const words[], const char *const out,
+static enum dig_status run_digrig(const char *const words[], const char *const out,
                                   const char *const truth, const char *const log,
                                   struct dig_error *const error)
 {
@@ -178,12 +187,9 @@ enum dig_status blind_base_make(const char *const digrig, const char *const mach
     (void)snprintf(out, sizeof out, "%s/%s.csv", folder, name);
     (void)snprintf(truth, sizeof truth, "%s/%s_truth.csv", folder, name);
     (void)snprintf(log, sizeof log, "%s/%s.log", folder, name);
-    const char *const argv[] = { digrig, "record", path,      "--machine", machine, "--exact",
-                                 "-o",   out,      "--truth", truth,       NULL };
-    // execv() takes pointers to what it does not change.
-    char *words[sizeof argv / sizeof argv[0]];
-    memcpy(words, argv, sizeof argv);
-    enum dig_status status = run_digrig(words, out, truth, log, error);
+    const char *const words[] = { digrig, "record", path,      "--machine", machine, "--exact",
+                                  "-o",   out,      "--truth", truth,       NULL };
+    enum dig_status   status  = run_digrig(words, out, truth, log, error);
     if (status != DIG_OK) {
         return status;
     }

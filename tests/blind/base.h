@@ -27,7 +27,7 @@ void blind_base_finish(struct blind_base *base);
 
 /// Runs a program with its output in a file; -1, or its exit status. Seconds of its processor time
 /// and its peak memory in bytes, when wanted. It is ended after limit_s of processor time.
-int blind_spawn(char *const argv[], const char *output, unsigned limit_s, double *cpu_s,
+int blind_spawn(const char *const argv[], const char *output, unsigned limit_s, double *cpu_s,
                 double *peak_B);
 
 #endif // DIG_TESTS_BLIND_BASE_H

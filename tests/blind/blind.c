@@ -208,13 +208,8 @@ static void schedule(struct plan *const plan, const size_t n)
 
 static void remove_folder(const char *const folder)
 {
-    char *words[] = { strdup("/bin/rm"), strdup("-rf"), strdup("--"), strdup(folder), NULL };
-    if (words[0] != NULL && words[1] != NULL && words[2] != NULL && words[3] != NULL) {
-        (void)blind_spawn(words, "/dev/null", 60, NULL, NULL);
-    }
-    for (int i = 0; i < 4; i++) {
-        free(words[i]);
-    }
+    const char *const words[] = { "/bin/rm", "-rf", "--", folder, NULL };
+    (void)blind_spawn(words, "/dev/null", 60, NULL, NULL);
 }
 
 // Of a log: why the program ended. Left as it is where there is none.
@@ -238,13 +233,11 @@ static void trace(const struct bench *const bench, const char *const folder,
     char log[PATH_MAX + 16];
     (void)snprintf(json, sizeof json, "%s/trace.json", folder);
     (void)snprintf(log, sizeof log, "%s/trace.log", folder);
-    const char *const argv[] = { bench->digloop, "trace", bench->o.table, folder, "--json",
-                                 json,           NULL };
-    char             *words[sizeof argv / sizeof argv[0]];
-    memcpy(words, argv, sizeof argv); // execv() takes pointers to what it does not change
-    const int        status = blind_spawn(words, log, 300, &r->cpu_s, &r->peak_B);
-    struct dig_error error  = { "" };
-    r->state                = BLIND_FAILED;
+    const char *const words[] = { bench->digloop, "trace", bench->o.table, folder, "--json",
+                                  json,           NULL };
+    const int         status  = blind_spawn(words, log, 300, &r->cpu_s, &r->peak_B);
+    struct dig_error  error   = { "" };
+    r->state                  = BLIND_FAILED;
     if (status == 2) {
         r->state = BLIND_REFUSED;
         last_line(log, sizeof r->why, r->why);

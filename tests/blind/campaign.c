@@ -246,8 +246,7 @@ static enum dig_status weigh(const struct blind_site *const     site,
         if (j == DIG_JOINT_BUCKET) {
             struct blind_curve add;
             status = blind_curve_of_samples(site->trajectory[dig->path], site->tooth_m, dig->pace,
-                                            DIG_SMOOTH_HALF_s, base->step_s / slow, n - begin,
-                                            delta + begin, &add);
+                                            base->step_s / slow, n - begin, delta + begin, &add);
             // The cylinder's moment on the bucket is against the soil's; machine axes are the
             // rig's mirrored twice.
             for (int k = 0; k < DIG_CURVE_POINTS && status == DIG_OK; k++) {

@@ -26,14 +26,14 @@ static double between(const size_t n, const double t_s[], const double y[], cons
 }
 
 static enum dig_status sample(const struct dig_trajectory *const trajectory, const double tooth_m,
-                              const double pace, const double half_s, const size_t n,
-                              const double t_s[], const double y[], struct blind_curve *const curve)
+                              const double pace, const size_t n, const double t_s[],
+                              const double y[], struct blind_curve *const curve)
 {
     double *const smooth = calloc(n, sizeof *smooth);
     if (smooth == NULL) {
         return DIG_ENOMEM;
     }
-    dig_curve_smooth(n, t_s, y, half_s, smooth);
+    dig_curve_smooth(n, t_s, y, DIG_SMOOTH_HALF_s, smooth);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at =
             dig_trajectory_time_s(trajectory, tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
@@ -55,15 +55,15 @@ enum dig_status blind_curve_of(const struct dig_trajectory *const trajectory, co
             t_s[i]     = recording->row[i].t_s;
             t_s[n + i] = recording->row[i].My_Nm;
         }
-        status = sample(trajectory, tooth_m, pace, DIG_SMOOTH_HALF_s, n, t_s, t_s + n, curve);
+        status = sample(trajectory, tooth_m, pace, n, t_s, t_s + n, curve);
     }
     free(t_s);
     return status;
 }
 
 enum dig_status blind_curve_of_samples(const struct dig_trajectory *const trajectory,
-                                       const double tooth_m, const double pace, const double half_s,
-                                       const double step_s, const size_t n, const double value[],
+                                       const double tooth_m, const double pace, const double step_s,
+                                       const size_t n, const double value[],
                                        struct blind_curve *const curve)
 {
     double *const t_s = calloc(n, sizeof *t_s);
@@ -73,7 +73,7 @@ enum dig_status blind_curve_of_samples(const struct dig_trajectory *const trajec
     for (size_t i = 0; i < n; i++) {
         t_s[i] = (double)i * step_s;
     }
-    const enum dig_status status = sample(trajectory, tooth_m, pace, half_s, n, t_s, value, curve);
+    const enum dig_status status = sample(trajectory, tooth_m, pace, n, t_s, value, curve);
     free(t_s);
     return status;
 }

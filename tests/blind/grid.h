@@ -19,8 +19,8 @@ DIG_MUST_CHECK enum dig_status blind_curve_of(const struct dig_trajectory *traje
 
 /// The same of any even samples: n values, the i-th at i * step_s since the dig began.
 DIG_MUST_CHECK enum dig_status blind_curve_of_samples(const struct dig_trajectory *trajectory,
-                                                      double tooth_m, double pace, double half_s,
-                                                      double step_s, size_t n, const double value[],
+                                                      double tooth_m, double pace, double step_s,
+                                                      size_t n, const double value[],
                                                       struct blind_curve *curve);
 
 /// Integral of a * b over rig time along the whole trajectory.

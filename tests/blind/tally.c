@@ -1,6 +1,6 @@
 #include "tests/blind/tally.h"
 
-#include "core/effect.h"
+#include "core/sort.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,11 +13,6 @@ static const char *const class_title[BLIND_CLASSES] = { "below 1", "1 to 2.25", 
 
 static const char *const answer_title[BLIND_ANSWERS] = { "right",    "in set", "extra",  "none",
                                                          "unlisted", "wrong",  "refused" };
-
-static int compare(const void *const a, const void *const b)
-{
-    return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
-}
 
 // Medians over campaigns with one effect of size 3 and more of after / oracle and before / oracle.
 static void ratios(const size_t n, const struct blind_result result[], double *const before,
@@ -38,10 +33,8 @@ static void ratios(const size_t n, const struct blind_result result[], double *c
     }
     *count = k;
     if (k > 0) {
-        qsort(a, k, sizeof *a, compare);
-        qsort(b, k, sizeof *b, compare);
-        *before = b[k / 2];
-        *after  = a[k / 2];
+        *before = dig_sort_median(k, b);
+        *after  = dig_sort_median(k, a);
     }
     free(a);
     free(b);

@@ -1,6 +1,7 @@
 // The engine against LIGGGHTS-PUBLIC 3.8: tests/data/liggghts holds the decks, the script that runs
 // them and what came out.
 
+#include "core/sort.h"
 #include "offline_dem/world/grain_types.h"
 #include "tests/offline_dem/liggghts_fixture.h"
 
@@ -142,16 +143,9 @@ struct heap {
     double mean_x_m, mean_z_m, reach_m; // reach: 95 % of the grains lie before it
 };
 
-static int compare_doubles(const void *const a, const void *const b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 static void sum_up(const size_t n, double x_m[], const double z_m[], struct heap *const heap)
 {
-    qsort(x_m, n, sizeof *x_m, compare_doubles);
+    dig_sort(n, x_m);
     heap->reach_m += x_m[n * 95 / 100];
     for (size_t i = 0; i < n; i++) {
         heap->mean_x_m += x_m[i] / (double)n;
