@@ -6,10 +6,20 @@
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 
-static inline struct dig_gravel random_gravel(uint64_t *const seed)
+#include <math.h>
+
+static inline struct dig_gravel random_gravel_of(uint64_t *const seed, const double density_kgpm3)
 {
     return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
-                                  1500 + 2500 * model_uniform(seed) } };
+                                  density_kgpm3 } };
+}
+
+/// As likely as any in the made table.
+static inline struct dig_gravel random_gravel(uint64_t *const seed)
+{
+    struct dig_gravel gravel = random_gravel_of(seed, 1500.0);
+    gravel.value[DIG_AXIS_DENSITY_kgpm3] *= pow(4000.0 / 1500.0, model_uniform(seed));
+    return gravel;
 }
 
 /// Forces are as the table has them, -8 and 5 times the moment, with errors of their own.

@@ -1,30 +1,12 @@
 // Tests for estimator/match/fit_nlopt.c and estimator/match/posterior.c
 
-#include "estimator/match/match.h"
-
-#include "tests/made_table.h"
-#include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/estimator/fitted_match.h"
+#include "tests/estimator/random_dig.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const struct made_options plain = { .relative_sd = 0.1, .packings = 1000 };
-
-static struct dig_match fit(const struct dig_curve_set *const   set,
-                            const struct dig_observation *const o, const int evaluations)
-{
-    struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, 1, o, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, 1, o, evaluations, &match), DIG_OK);
-    return match;
-}
-
-static struct dig_gravel random_gravel(uint64_t *const seed)
-{
-    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
-                                  1500 * pow(4000.0 / 1500.0, model_uniform(seed)) } };
-}
 
 // Observations read off the interpolated table itself have a gravel of distance 0, wherever it
 // lies.
@@ -40,7 +22,7 @@ TEST(a_gravel_planted_between_the_grid_points_is_found)
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
             o.moment_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
         }
-        const struct dig_match match = fit(set, &o, 1500);
+        const struct dig_match match = fit(set, 1, &o, 1500);
         assert_true(match.distance <= match.nearest_distance);
         assert_close(match.distance, 0.0, 0.01);
 
@@ -59,7 +41,7 @@ TEST(with_one_density_friction_and_rolling_are_found_themselves)
     struct dig_curve_set *const set = made_table(&one);
     const struct dig_gravel     planted = { { 0.62, 0.33, 2500 } };
     const struct dig_observation o      = made_observation(&planted, MADE_SIMPLE_A, 0.0);
-    const struct dig_match       match  = fit(set, &o, 600);
+    const struct dig_match       match  = fit(set, 1, &o, 600);
     assert_close(match.gravel.value[0], 0.62, 0.005);
     assert_close(match.gravel.value[1], 0.33, 0.01);
     assert_close(match.gravel.value[2], 2500, 0.0);
@@ -76,7 +58,7 @@ TEST(more_evaluations_never_make_it_worse_and_few_are_enough_to_return)
     const struct dig_observation o             = made_observation(&planted, MADE_SIMPLE_A, 0.0);
     const int                    evaluations[] = { 1, 2, 5, 30, 100, 400 };
     for (size_t i = 0; i < sizeof evaluations / sizeof evaluations[0]; i++) {
-        const struct dig_match match = fit(set, &o, evaluations[i]);
+        const struct dig_match match = fit(set, 1, &o, evaluations[i]);
         assert_true(match.distance <= match.nearest_distance + 1e-12);
         assert_int_equal(match.samples, DIG_MATCH_SAMPLES);
     }
@@ -89,7 +71,7 @@ TEST(a_hole_is_gone_round)
     struct dig_curve_set *const  set     = made_table(&holed);
     const struct dig_gravel      planted = { { 0.52, 0.42, 2600 } }; // beside the hole
     const struct dig_observation o       = made_observation(&planted, MADE_SIMPLE_A, 0.0);
-    const struct dig_match       match   = fit(set, &o, 400);
+    const struct dig_match       match   = fit(set, 1, &o, 400);
     struct dig_curve             curve;
     assert_int_equal(dig_match_interpolate(set, &match.gravel, MADE_SIMPLE_A, &curve), DIG_OK);
     for (size_t s = 0; s < match.samples; s++) {
@@ -111,7 +93,7 @@ TEST(what_cannot_be_told_apart_has_a_wide_interval)
     const struct dig_gravel      planted = { { 0.6, 0.55, 2500 } };
     const struct dig_observation a       = made_observation(&planted, MADE_ACTUAL, 0.0);
     const struct dig_observation b       = made_observation(&planted, MADE_ACTUAL, 1.0);
-    const struct dig_match       sure = fit(told, &a, 300), unsure = fit(alike, &b, 300);
+    const struct dig_match       sure = fit(told, 1, &a, 300), unsure = fit(alike, 1, &b, 300);
     assert_true(sure.high.value[0] - sure.low.value[0] < 0.3);
     assert_true(unsure.high.value[0] - unsure.low.value[0] > 0.45);
     assert_true(unsure.high.value[1] - unsure.low.value[1] > 0.45);
@@ -120,12 +102,10 @@ TEST(what_cannot_be_told_apart_has_a_wide_interval)
     // rolling friction is told to within two thirds of its axis: not told.)
     char                   names[DIG_UNTOLD_SIZE];
     struct dig_observation digs[8];
-    struct dig_match       point;
     for (size_t d = 0; d < 8; d++) {
         digs[d] = a;
     }
-    assert_int_equal(dig_match_nearest(told, 8, digs, 2.5, &point), DIG_OK);
-    assert_int_equal(dig_fit_refine(told, 8, digs, 300, &point), DIG_OK);
+    const struct dig_match point = fit(told, 8, digs, 300);
     print_message(
         "axis 0, 1: %.2f %.2f of one dig, %.2f %.2f of eight, %.2f %.2f of alike\n",
         sure.high.value[0] - sure.low.value[0], sure.high.value[1] - sure.low.value[1],
@@ -151,27 +131,24 @@ TEST(what_cannot_be_told_apart_has_a_wide_interval)
 // Gravels drawn from the prior, digs disturbed as the table says: nine of ten lie in the interval.
 TEST(ninety_per_cent_of_gravels_lie_in_their_interval)
 {
-    struct dig_curve_set *const set          = made_table(&plain);
-    const int                   trials       = test_is_quick() ? 40 : 200;
-    uint64_t                    seed         = 99;
-    int                         in[DIG_AXES] = { 0 };
+    struct dig_curve_set *const set    = made_table(&plain);
+    const int                   trials = test_is_quick() ? 40 : 200;
+    uint64_t                    seed   = 99;
+    struct held                 held   = { 0 };
     for (int trial = 0; trial < trials; trial++) {
         const struct dig_gravel planted = random_gravel(&seed);
         struct dig_observation  o       = made_observation(&planted, MADE_ACTUAL, 0.0);
         made_disturb(&o, 0.1, &seed);
-        const struct dig_match match = fit(set, &o, 30);
+        const struct dig_match match = fit(set, 1, &o, 30);
+        held_add(&held, &match, &planted);
         for (int a = 0; a < DIG_AXES; a++) {
             assert_true(match.low.value[a] <= match.mean.value[a] &&
                         match.mean.value[a] <= match.high.value[a]);
-            in[a] +=
-                planted.value[a] >= match.low.value[a] && planted.value[a] <= match.high.value[a]
-                    ? 1
-                    : 0;
         }
     }
     for (int a = 0; a < DIG_AXES; a++) {
-        print_message("axis %d: %d of %d in the 90 %% interval\n", a, in[a], trials);
-        assert_close((double)in[a] / trials, 0.9, trials < 100 ? 0.13 : 0.06);
+        print_message("axis %d: %d of %d in the 90 %% interval\n", a, held.in[a], trials);
+        assert_close((double)held.in[a] / trials, 0.9, trials < 100 ? 0.13 : 0.06);
     }
     made_table_destroy(set);
 }
@@ -181,11 +158,11 @@ TEST(of_part_of_a_path_less_is_told_and_as_rightly)
 {
     const struct made_options   one = { .relative_sd = 0.1, .packings = 1000, .one_density = true };
     struct dig_curve_set *const set = made_table(&one);
-    const int                   trials   = test_is_quick() ? 60 : 200;
-    static const double         until[]  = { 1.0, 0.6, 0.3 };
-    uint64_t                    seed     = 7;
-    int                         in[3][2] = { { 0 } };
-    double                      width[3] = { 0.0 };
+    const int                   trials  = test_is_quick() ? 60 : 200;
+    static const double         until[] = { 1.0, 0.6, 0.3 };
+    static const char *const    what[]  = { "the whole path", "0.6 of it", "0.3 of it" };
+    uint64_t                    seed    = 7;
+    struct held                 held[3] = { { 0 } };
     for (int trial = 0; trial < trials; trial++) {
         struct dig_gravel planted = random_gravel(&seed);
         planted.value[2]          = 2500;
@@ -193,28 +170,14 @@ TEST(of_part_of_a_path_less_is_told_and_as_rightly)
         made_disturb(&o, 0.1, &seed);
         for (int u = 0; u < 3; u++) {
             o.last                       = until[u];
-            const struct dig_match match = fit(set, &o, 100);
-            width[u] += (match.high.value[0] - match.low.value[0]) / trials;
-            for (int a = 0; a < 2; a++) {
-                in[u][a] += planted.value[a] >= match.low.value[a] &&
-                                    planted.value[a] <= match.high.value[a]
-                                ? 1
-                                : 0;
-            }
+            const struct dig_match match = fit(set, 1, &o, 100);
+            held_add(&held[u], &match, &planted);
         }
     }
     for (int u = 0; u < 3; u++) {
-        print_message("%.1f of the path: %.3f and %.3f in the interval, %.3f wide\n", until[u],
-                      (double)in[u][0] / trials, (double)in[u][1] / trials, width[u]);
-        for (int a = 0; a < 2; a++) {
-            // Not fewer than chance allows, nor more of the 95 % that a likelihood by 0.7 gives:
-            // 0.84 to 0.996 of 200; of the 60 of a quick run only fewer can be told.
-            const double share = (double)in[u][a] / trials;
-            assert_true(share > 0.9 - 3.0 * sqrt(0.9 * 0.1 / trials) &&
-                        share < 0.95 + 3.0 * sqrt(0.95 * 0.05 / trials));
-        }
+        held_expect(&held[u], 2, what[u]);
     }
-    assert_true(width[1] > width[0] && width[2] > 1.2 * width[0]);
+    assert_true(held[1].width[0] > held[0].width[0] && held[2].width[0] > 1.2 * held[0].width[0]);
     made_table_destroy(set);
 }
 
@@ -240,7 +203,7 @@ TEST(scattered_entries_keep_their_nearest)
     for (int a = 0; a < DIG_AXES; a++) {
         set->axis_count[a] = 0;
     }
-    const struct dig_match match = fit(set, &o, 100);
+    const struct dig_match match = fit(set, 1, &o, 100);
     assert_int_equal(match.nearest, 9);
     assert_int_equal(match.samples, 0);
     assert_close(match.gravel.value[0], set->gravel[9].value[0], 0.0);

@@ -5,10 +5,8 @@
 #include "estimator/match/gaussian.h"
 
 #include "core/outline.h"
-#include "estimator/match/match.h"
-#include "tests/made_table.h"
-#include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/estimator/fitted_match.h"
+#include "tests/estimator/random_dig.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -125,26 +123,19 @@ TEST(misses_are_as_large_as_digs_make_them)
 // counts by less than it would.
 TEST(the_interval_holds_the_gravel)
 {
-    const int                   trials       = test_is_quick() ? 60 : 200;
-    uint64_t                    seed         = 11;
-    struct dig_curve_set *const set          = taught(enough_freedom, true, &seed);
-    int                         in[DIG_AXES] = { 0 };
+    const int                   trials = test_is_quick() ? 60 : 200;
+    uint64_t                    seed   = 11;
+    struct dig_curve_set *const set    = taught(enough_freedom, true, &seed);
+    struct held                 held   = { 0 };
     for (int trial = 0; trial < trials; trial++) {
-        const struct dig_gravel      gravel = { { 0.3 + 0.6 * model_uniform(&seed),
-                                                  0.1 + 0.9 * model_uniform(&seed),
-                                                  1500 * pow(4000.0 / 1500.0, model_uniform(&seed)) } };
+        const struct dig_gravel      gravel = random_gravel(&seed);
         const struct dig_observation dig    = dig_there(&gravel, true, true, &seed);
-        struct dig_match             match;
-        assert_int_equal(dig_match_nearest(set, 1, &dig, 3.0, &match), DIG_OK);
-        assert_int_equal(dig_fit_refine(set, 1, &dig, 100, &match), DIG_OK);
-        for (int a = 0; a < DIG_AXES; a++) {
-            in[a] +=
-                gravel.value[a] >= match.low.value[a] && gravel.value[a] <= match.high.value[a];
-        }
+        const struct dig_match       match  = fit(set, 1, &dig, 100);
+        held_add(&held, &match, &gravel);
     }
     for (int a = 0; a < DIG_AXES; a++) {
-        print_message("axis %d: %d of %d in the interval\n", a, in[a], trials);
-        assert_true(in[a] > trials * (0.9 - 3.0 * sqrt(0.9 * 0.1 / trials)));
+        print_message("axis %d: %d of %d in the interval\n", a, held.in[a], trials);
+        assert_true(held.in[a] > trials * (0.9 - 3.0 * sqrt(0.9 * 0.1 / trials)));
     }
     forget(set);
 }

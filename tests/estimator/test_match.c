@@ -3,8 +3,7 @@
 #include "estimator/match/match.h"
 
 #include "estimator/approach/interpolate.h"
-#include "tests/made_table.h"
-#include "tests/model_front.h"
+#include "tests/estimator/random_dig.h"
 #include "tests/testlib.h"
 
 #include <string.h>
@@ -25,12 +24,6 @@ static double distance_to(const struct dig_curve_set *const set, const size_t en
         }
     }
     return sqrt(miss / whole);
-}
-
-static struct dig_gravel random_gravel(uint64_t *const seed)
-{
-    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
-                                  1500 * pow(4000.0 / 1500.0, model_uniform(seed)) } };
 }
 
 TEST(nearest_is_what_brute_force_finds)

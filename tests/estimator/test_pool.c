@@ -2,11 +2,10 @@
 
 #include "estimator/match/pool.h"
 
-#include "estimator/match/match.h"
-#include "tests/made_table.h"
-#include "tests/model_front.h"
-#include "tests/testlib.h"
+#include "tests/estimator/fitted_match.h"
+#include "tests/estimator/random_dig.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,22 +16,6 @@ static const struct made_options  flat    = { .relative_sd = 0.1,
                                               .packings    = PACKINGS,
                                               .one_density = true };
 static const enum made_trajectory both[]  = { MADE_SIMPLE_A, MADE_SIMPLE_B };
-
-static struct dig_match fit(const struct dig_curve_set *const set, const size_t digs,
-                            const struct dig_observation dig[], const int evaluations)
-{
-    struct dig_match match;
-    assert_int_equal(dig_match_nearest(set, digs, dig, 2.5, &match), DIG_OK);
-    assert_int_equal(dig_fit_refine(set, digs, dig, evaluations, &match), DIG_OK);
-    assert_int_equal(match.digs, digs);
-    return match;
-}
-
-static struct dig_gravel random_gravel(uint64_t *const seed, const double density_kgpm3)
-{
-    return (struct dig_gravel){ { 0.3 + 0.6 * model_uniform(seed), 0.1 + 0.9 * model_uniform(seed),
-                                  density_kgpm3 } };
-}
 
 // What the table's mean of few packings is wrong by is the same for all digs of a trajectory; each
 // adds its own.
@@ -98,7 +81,7 @@ TEST(sums_are_what_brute_force_adds_up)
     uint64_t                    seed = 5;
     struct dig_observation      dig[DIGS];
     for (int d = 0; d < DIGS; d++) {
-        const struct dig_gravel gravel = random_gravel(&seed, 2200);
+        const struct dig_gravel gravel = random_gravel_of(&seed, 2200);
         dig[d]                         = made_observation(&gravel, both[d % 2], 0.0);
         made_disturb(&dig[d], 0.2, &seed);
         dig[d].first = 0.1 * d;
@@ -157,42 +140,29 @@ TEST(more_digs_tell_more_and_never_too_much)
 {
     static const size_t digs[] = { 1, 2, 4, 8 };
     enum { STEPS = sizeof digs / sizeof digs[0] };
-    struct dig_curve_set *const set             = made_table(&flat);
-    const int                   trials          = test_is_quick() ? 60 : 300;
-    uint64_t                    seed            = 2026;
-    int                         in[STEPS][2]    = { { 0 } };
-    double                      width[STEPS][2] = { { 0 } };
+    struct dig_curve_set *const set         = made_table(&flat);
+    const int                   trials      = test_is_quick() ? 60 : 300;
+    uint64_t                    seed        = 2026;
+    struct held                 held[STEPS] = { { 0 } };
     for (int trial = 0; trial < trials; trial++) {
-        const struct dig_gravel gravel = random_gravel(&seed, 2500);
+        const struct dig_gravel gravel = random_gravel_of(&seed, 2500);
         struct dig_observation  dig[DIG_POOL_MAX];
         dig_there(&gravel, MADE_ACTUAL, DIG_POOL_MAX, dig, &seed);
         for (int s = 0; s < STEPS; s++) {
             const struct dig_match m = fit(set, digs[s], dig, 100);
-            for (int a = 0; a < 2; a++) {
-                const double v = gravel.value[a];
-                in[s][a] += v >= m.low.value[a] && v <= m.high.value[a] ? 1 : 0;
-                width[s][a] += (m.high.value[a] - m.low.value[a]) / trials;
-            }
+            held_add(&held[s], &m, &gravel);
         }
     }
     for (int s = 0; s < STEPS; s++) {
-        for (int a = 0; a < 2; a++) {
-            const double share = (double)in[s][a] / trials;
-            print_message("%zu digs, axis %d: %.3f in the interval, mean width %.3f\n", digs[s], a,
-                          share, width[s][a]);
-            // The likelihood counts by 0.7, so where all is as it assumes 95 % lie in an interval
-            // of 90 %. Three standard deviations of a binomial count.
-            assert_true(share > 0.9 - 3.0 * sqrt(0.9 * 0.1 / trials) &&
-                        share < 0.95 + 3.0 * sqrt(0.95 * 0.05 / trials));
-            if (s > 0) {
-                assert_true(width[s][a] < width[s - 1][a]);
-            }
-        }
-        // Errors of 1/n + 1/3 parts of one dig's variance: of eight digs 0.59 of those of one.
-        if (digs[s] == 8) {
-            assert_true(width[s][0] / width[0][0] > 0.50 && width[s][0] / width[0][0] < 0.70);
-        }
+        char what[32];
+        (void)snprintf(what, sizeof what, "%zu digs", digs[s]);
+        held_expect(&held[s], 2, what);
+        assert_true(s == 0 || (held[s].width[0] < held[s - 1].width[0] &&
+                               held[s].width[1] < held[s - 1].width[1]));
     }
+    // Errors of 1/n + 1/3 parts of one dig's variance: of eight digs 0.59 of those of one.
+    const double narrower = held[3].width[0] / held[0].width[0];
+    assert_true(narrower > 0.50 && narrower < 0.70);
     made_table_destroy(set);
 }
 

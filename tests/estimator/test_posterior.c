@@ -5,10 +5,8 @@
 #include "core/outline.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/entry_scatter.h"
-#include "estimator/match/match.h"
 #include "tests/estimator/fitted_match.h"
-#include "tests/made_table.h"
-#include "tests/model_front.h"
+#include "tests/estimator/random_dig.h"
 #include "tests/testlib.h"
 
 #include <stdlib.h>
@@ -101,40 +99,36 @@ static void dig_there(const struct dig_gravel *const gravel, const size_t digs,
 TEST(forces_tell_more_and_never_too_much)
 {
     enum { STEPS = 3 };
-    static const size_t         digs[STEPS]     = { 1, 1, 4 };
-    struct dig_curve_set *const set             = table_with_forces();
-    const int                   trials          = test_is_quick() ? 60 : 150;
-    uint64_t                    seed            = 31;
-    int                         in[STEPS][2]    = { { 0 } };
-    double                      width[STEPS][2] = { { 0.0 } };
+    static const struct {
+        size_t      digs;
+        bool        forces;
+        const char *what;
+    } step[STEPS] = { { 1, false, "1 dig, moment alone" },
+                      { 1, true, "1 dig, moment and forces" },
+                      { 4, true, "4 digs, moment and forces" } };
+
+    struct dig_curve_set *const set         = table_with_forces();
+    const int                   trials      = test_is_quick() ? 60 : 150;
+    uint64_t                    seed        = 31;
+    struct held                 held[STEPS] = { { 0 } };
     for (int trial = 0; trial < trials; trial++) {
-        const struct dig_gravel gravel = { { 0.3 + 0.6 * model_uniform(&seed),
-                                             0.1 + 0.9 * model_uniform(&seed), 2500 } };
+        const struct dig_gravel gravel = random_gravel_of(&seed, 2500);
         struct dig_observation  dig[4];
         dig_there(&gravel, 4, dig, &seed);
         for (int s = 0; s < STEPS; s++) {
-            dig[0].forces            = s > 0;
-            const struct dig_match m = fit(set, digs[s], dig);
-            assert_true(m.forces == (s > 0));
-            for (int a = 0; a < 2; a++) {
-                const double v = gravel.value[a];
-                in[s][a] += v >= m.low.value[a] && v <= m.high.value[a] ? 1 : 0;
-                width[s][a] += (m.high.value[a] - m.low.value[a]) / trials;
-            }
+            dig[0].forces            = step[s].forces;
+            const struct dig_match m = fit(set, step[s].digs, dig, 100);
+            assert_true(m.forces == step[s].forces);
+            held_add(&held[s], &m, &gravel);
         }
     }
     for (int s = 0; s < STEPS; s++) {
-        for (int a = 0; a < 2; a++) {
-            const double share = (double)in[s][a] / trials;
-            print_message("%zu digs, %s, axis %d: %.3f in the interval, mean width %.3f\n", digs[s],
-                          s > 0 ? "moment and forces" : "moment alone", a, share, width[s][a]);
-            // Not fewer than chance allows, nor more of the 95 % that a likelihood by 0.7 gives.
-            assert_true(share > 0.9 - 3.0 * sqrt(0.9 * 0.1 / trials) &&
-                        share < fmin(0.95 + 3.0 * sqrt(0.95 * 0.05 / trials), 0.999));
-        }
+        held_expect(&held[s], 2, step[s].what);
+        assert_true(held[s].in[0] < trials && held[s].in[1] < trials);
     }
-    assert_true(width[1][0] < 0.9 * width[0][0] && width[1][1] < 0.5 * width[0][1]);
-    assert_true(width[2][0] < width[1][0] && width[2][1] < width[1][1]);
+    assert_true(held[1].width[0] < 0.9 * held[0].width[0]);
+    assert_true(held[1].width[1] < 0.5 * held[0].width[1]);
+    assert_true(held[2].width[0] < held[1].width[0] && held[2].width[1] < held[1].width[1]);
     made_table_destroy(set);
 }
 
@@ -146,9 +140,9 @@ TEST(forces_count_only_where_every_dig_has_them)
     struct dig_observation      dig[3];
     dig_there(&(struct dig_gravel){ { 0.6, 0.5, 2500 } }, 3, dig, &seed);
     dig[1].forces                = false;
-    const struct dig_match mixed = fit(set, 3, dig);
+    const struct dig_match mixed = fit(set, 3, dig, 100);
     dig[0].forces = dig[2].forces = false;
-    const struct dig_match none   = fit(set, 3, dig);
+    const struct dig_match none   = fit(set, 3, dig, 100);
     assert_false(mixed.forces);
     for (int a = 0; a < DIG_AXES; a++) {
         assert_close(mixed.low.value[a], none.low.value[a], 0.0);
@@ -191,7 +185,7 @@ TEST(forces_that_no_gravel_has_are_told_and_done_without)
         const size_t            digs   = trial % 2 == 0 ? 1 : 3;
         struct dig_observation  dig[3];
         dig_there(&gravel, digs, dig, &seed);
-        const struct dig_match inside = fit(set, digs, dig);
+        const struct dig_match inside = fit(set, digs, dig, 100);
         assert_true(inside.forces && !inside.outside);
 
         // Pushed twice as hard as by any friction, lifted half as hard as by any rolling friction.
@@ -201,12 +195,12 @@ TEST(forces_that_no_gravel_has_are_told_and_done_without)
                 dig[d].force_N[1][k] *= 0.4;
             }
         }
-        const struct dig_match outside = fit(set, digs, dig);
+        const struct dig_match outside = fit(set, digs, dig, 100);
         assert_true(outside.outside && !outside.forces);
         for (size_t d = 0; d < digs; d++) {
             dig[d].forces = false;
         }
-        const struct dig_match bare = fit(set, digs, dig);
+        const struct dig_match bare = fit(set, digs, dig, 100);
         assert_false(bare.outside);
         expect_the_same(&outside, &bare);
     }
@@ -225,8 +219,7 @@ TEST(excess_has_one_scale_for_digs_of_any_length)
     for (int c = 0; c < CASES; c++) {
         double sum = 0.0, sum2 = 0.0;
         for (int trial = 0; trial < TRIALS; trial++) {
-            const struct dig_gravel gravel = { { 0.3 + 0.6 * model_uniform(&seed),
-                                                 0.1 + 0.9 * model_uniform(&seed), 2500 } };
+            const struct dig_gravel gravel = random_gravel_of(&seed, 2500);
             struct dig_observation  dig[3];
             struct dig_pool_sums    sums;
             dig_there(&gravel, digs[c], dig, &seed);

@@ -38,7 +38,7 @@ TEST(a_gravel_that_the_table_lacks_is_told_on_digs_of_liggghts)
         (void)snprintf(path, sizeof path, "tests/data/reference/%s_rho2500__simpleA.csv",
                        gravels[g]);
         const struct dig_observation dig = reference(set, path, true);
-        const struct dig_match       m   = fit(set, 1, &dig);
+        const struct dig_match       m   = fit(set, 1, &dig, 100);
         assert_true(m.outside == (g == 0) && m.forces == (g != 0));
     }
     dig_curve_set_destroy(set);
@@ -60,7 +60,7 @@ static void add_reference(const struct dig_curve_set *const set, const char *con
                        both, both, seed, trajectory);
         dig[p] = reference(set, path, forces);
     }
-    const struct dig_match m = fit(set, (size_t)packings, dig);
+    const struct dig_match m = fit(set, (size_t)packings, dig, 100);
     print_message("%.1f/%.1f/2500 %-8s %s: %.2f (%.2f to %.2f), %.2f (%.2f to %.2f), %.0f (%.0f to "
                   "%.0f)\n",
                   both, both, trajectory, forces ? "moment and forces" : "moment alone     ",
