@@ -3,8 +3,7 @@
 #include "files/grid_yaml.h"
 
 #include "core/units.h"
-#include "files/scene_yaml.h"
-#include "tests/scratch.h"
+#include "tests/files/yaml_fixture.h"
 
 #define AXES "friction: [.3, .5]\nrolling: [0]\ndensity_kgpm3: [2500]\n"
 
@@ -72,25 +71,20 @@ TEST(depths_and_attacks_load_as_a_cross_or_a_product)
     assert_int_equal(grid.varied_packings, 0);
 }
 
+static void fits_the_rig(const char *const path)
+{
+    const struct dig_scene rig = read_scene("config/scenes/rig.yaml");
+    struct dig_grid        grid;
+    struct dig_error       error = { "" };
+    size_t                 count = 0, trajectory[DIG_TRAJECTORY_MAX];
+    assert_ok(dig_grid_read(path, &grid, &error), error);
+    assert_ok(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error), error);
+    assert_true(count > 0);
+}
+
 TEST(every_grid_that_is_shipped_fits_the_rig)
 {
-    struct dig_scene rig;
-    assert_int_equal(dig_scene_read("config/scenes/rig.yaml", &rig, NULL), DIG_OK);
-    DIR *const dir = opendir("config/grids");
-    assert_non_null(dir);
-    for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        if (strstr(entry->d_name, ".yaml") != NULL) {
-            char             path[512];
-            struct dig_grid  grid;
-            struct dig_error error = { "" };
-            size_t           count = 0, trajectory[DIG_TRAJECTORY_MAX];
-            (void)snprintf(path, sizeof path, "config/grids/%s", entry->d_name);
-            assert_ok(dig_grid_read(path, &grid, &error), error);
-            assert_ok(dig_grid_trajectories(path, &grid, &rig, &count, trajectory, &error), error);
-            assert_true(count > 0);
-        }
-    }
-    (void)closedir(dir);
+    yaml_loads_all("config/grids", fits_the_rig);
 }
 
 TEST(trajectories_are_found_in_the_scene_or_refused)

@@ -86,6 +86,26 @@ static inline void yaml_scene_hash(const char *const text, char hex[const 65])
     dig_scene_hash(&scene, hex);
 }
 
+/// Each of the changes { from, to } to the example by itself makes a scene of another identity, or
+/// of the same.
+static inline void yaml_scene_differs_by_each(const char *const example, const size_t changes,
+                                              const char *const change[][2], const bool differs)
+{
+    size_t      size = 0;
+    char *const text = scratch_read(example, &size);
+    char        before[65], after[65];
+    yaml_scene_hash(text, before);
+    for (size_t i = 0; i < changes; i++) {
+        char *const other = yaml_with(text, change[i][0], change[i][1]);
+        yaml_scene_hash(other, after);
+        if ((strcmp(before, after) != 0) != differs) {
+            fail_msg("\"%s\": the identity %s", change[i][1], differs ? "stays" : "changes");
+        }
+        free(other);
+    }
+    free(text);
+}
+
 /// What expect_refusal is for scenes.
 static inline void yaml_scene_refused(const char *const text, const char *const says)
 {
