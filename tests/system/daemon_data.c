@@ -98,33 +98,27 @@ static enum dig_status put(struct dig_store *const store, const struct dig_traje
     return status;
 }
 
-static enum dig_status fill(struct dig_store *const store, const struct dig_scene *const scene,
-                            struct dig_error *const error)
-{
-    static const double mu[] = { 0.3, 0.6, 0.9 }, rho[] = { 1500.0, 2500.0 };
-    enum dig_status     status = DIG_OK;
-    for (size_t i = 0; status == DIG_OK && i < 3 * 3 * 2 * 3 * scene->trajectories; i++) {
-        const struct dig_run_origin key = {
-            .gravel     = { { mu[i % 3], mu[i / 3 % 3], rho[i / 9 % 2] } },
-            .packing    = i / 18 % 3,
-            .trajectory = i / 54,
-        };
-        status = put(store, &scene->trajectory[key.trajectory], &key, false, error);
-    }
-    return status;
-}
+// The gravels of a table: three frictions, as many of rolling, and densities; three packings each.
+struct gravels {
+    double mu[3];
+    size_t densities;
+    double rho[3];
+};
+static const struct gravels gravels_of_table = { { 0.3, 0.6, 0.9 }, 2, { 1500.0, 2500.0 } };
+static const struct gravels gravels_of_other = { { 0.25, 0.55, 0.85 },
+                                                 3,
+                                                 { 1400.0, 2000.0, 2600.0 } };
 
-static enum dig_status fill_other(struct dig_store *const       store,
-                                  const struct dig_scene *const scene,
-                                  struct dig_error *const       error)
+static enum dig_status fill(struct dig_store *const store, const struct dig_scene *const scene,
+                            const struct gravels *const g, struct dig_error *const error)
 {
-    static const double mu[] = { 0.25, 0.55, 0.85 }, rho[] = { 1400.0, 2000.0, 2600.0 };
-    enum dig_status     status = DIG_OK;
-    for (size_t i = 0; status == DIG_OK && i < 3 * 3 * 3 * 3 * scene->trajectories; i++) {
+    enum dig_status status = DIG_OK;
+    const size_t    all    = 3 * 3 * g->densities;
+    for (size_t i = 0; status == DIG_OK && i < all * 3 * scene->trajectories; i++) {
         const struct dig_run_origin key = {
-            .gravel     = { { mu[i % 3], mu[i / 3 % 3], rho[i / 9 % 3] } },
-            .packing    = i / 27 % 3,
-            .trajectory = i / 81,
+            .gravel     = { { g->mu[i % 3], g->mu[i / 3 % 3], g->rho[i / 9 % g->densities] } },
+            .packing    = i / all % 3,
+            .trajectory = i / all / 3,
         };
         status = put(store, &scene->trajectory[key.trajectory], &key, false, error);
     }
@@ -221,9 +215,8 @@ int main(const int argc, char *argv[])
     }
     status = status == DIG_OK ? dig_store_begin(store, &error) : status;
     if (status == DIG_OK) {
-        status = ways    ? fill_ways(store, &scene, &error)
-                 : other ? fill_other(store, &scene, &error)
-                         : fill(store, &scene, &error);
+        status = ways ? fill_ways(store, &scene, &error)
+                      : fill(store, &scene, other ? &gravels_of_other : &gravels_of_table, &error);
     }
     status = status == DIG_OK ? dig_store_commit(store, &error) : status;
     dig_store_close(store);

@@ -1,14 +1,10 @@
 #!/bin/bash
 # make install under a folder: every program has a manual page for itself and each command, completion completes what
 # --help lists, the configuration is loaded from where it was put; make uninstall takes all of it away again.
-set -u
 . tests/system/check.bash
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 command -v help2man >/dev/null || { echo "SKIP: no help2man here to make manual pages"; echo "0 passed, 0 failed, 1 skipped"; [ -z "${DIG_NO_SKIP-}" ]; exit; }
 root=$work/root prefix=/opt/test
-build=${BIN:-build/bin}
-build=${build%/bin}
+build=${BIN%/bin}
 in_make() { make --no-print-directory BUILD="$build" DESTDIR="$root" PREFIX=$prefix "$@" >"$work/out" 2>"$work/err"; }
 put=$root$prefix
 
@@ -88,5 +84,4 @@ check "so does uninstall, which leaves nothing else" \
 rm "$put/etc/digsight/digsightd.yaml"
 check "without one nothing at all is left" \
     eval 'in_make install && in_make uninstall && [ -z "$(find "$root" -type f | tee "$work/err")$(find "$put" -type d -name "digsight*")" ]'
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+finish
