@@ -77,7 +77,7 @@ msg_c     := $(patsubst %,$(BUILD)/messages/digsight_%.c,$(messages))
 msg_h     := $(msg_c:.c=.h)
 
 .DELETE_ON_ERROR:
-.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind bench-product bench-ablation check check-unit check-asan check-tsan check-valgrind fuzz fuzz-coverage torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
+.PHONY: all setup bench demo tables evaluate paper picture floors test bench-blind bench-product bench-ablation check check-unit check-asan check-tsan check-valgrind fuzz torture coverage lint lint-compiler lint-tidy lint-tidy-upper lint-tidy-lower layers docs-check \
         format format-check install uninstall clean help jar spy
 
 all: $(bins) ## Build everything that is installed
@@ -235,14 +235,6 @@ check-valgrind: $(test_bins) ## The unit tests under memcheck
 	$(Q)for t in $(test_bins); do echo "$$t"; \
 	    DIG_TEST_QUICK=1 valgrind -q --child-silent-after-fork=yes --leak-check=full --error-exitcode=1 ./$$t || exit 1; done
 
-FUZZ_S ?= 60
-fuzz: ## Damaged files, frames and replies against every reader, under sanitizers, FUZZ_S seconds each
-	$(Q)$(MAKE) --no-print-directory $(BUILD)/asan/tests/fuzz/fuzz_files $(BUILD)/asan/tests/fuzz/fuzz_bus \
-	    BUILD=$(BUILD)/asan CFLAGS="$(ASAN_FLAGS)"
-	$(Q)FUZZ_DIR=$(BUILD)/asan $(BUILD)/asan/tests/fuzz/fuzz_files $(FUZZ_S) $(FUZZ_SEED)
-	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus can $(FUZZ_S) $(FUZZ_SEED)
-	$(Q)$(BUILD)/asan/tests/fuzz/fuzz_bus modbus $(FUZZ_S) $(FUZZ_SEED)
-
 # What does not end when something is taken away or goes wrong, seconds or hours long: TORTURE_S for each script.
 TORTURE_S    ?= 30
 torture_made := $(patsubst tests/torture/%.c,$(BUILD)/tests/torture/%.so,$(wildcard tests/torture/fail_*.c)) \
@@ -265,17 +257,20 @@ $(BUILD)/tests/torture/%: $(BUILD)/tests/torture/%.o $(libs)
 	$(call say,LD,$@)
 	$(Q)$(call link,$(LIBS))
 
-# libFuzzer is clang's. FUZZ_TARGETS: some of the files of tests/fuzz/coverage.
+# libFuzzer is clang's. FUZZ_TARGETS: some of the files of tests/fuzz.
 FUZZ_SECONDS ?= 60
-FUZZ_TARGETS ?= $(patsubst tests/fuzz/coverage/%.c,%,$(wildcard tests/fuzz/coverage/*.c))
+FUZZ_TARGETS ?= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/*.c))
 FUZZ_FLAGS   := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
-fuzz-coverage: ## Inputs that libFuzzer leads by coverage against every reader, under sanitizers, FUZZ_SECONDS of processor time each
+fuzz: ## Inputs that libFuzzer leads by coverage against every reader, under sanitizers, FUZZ_SECONDS of processor time each
 	$(Q)scripts/setup.sh fuzz
-	$(Q)$(MAKE) --no-print-directory $(FUZZ_TARGETS:%=$(BUILD)/libfuzzer/tests/fuzz/coverage/%) \
+	$(Q)$(MAKE) --no-print-directory $(FUZZ_TARGETS:%=$(BUILD)/libfuzzer/tests/fuzz/%) \
 	    BUILD=$(BUILD)/libfuzzer CC=clang WARN=-w CFLAGS="$(FUZZ_FLAGS)"
-	$(Q)FUZZERS=$(BUILD)/libfuzzer/tests/fuzz/coverage CORPORA=$(BUILD)/fuzz-corpora \
-	    scripts/fuzz_coverage.sh $(FUZZ_SECONDS) $(FUZZ_TARGETS)
-$(BUILD)/tests/fuzz/coverage/%: LDFLAGS += -fsanitize=fuzzer
+	$(Q)FUZZERS=$(BUILD)/libfuzzer/tests/fuzz CORPORA=$(BUILD)/fuzz-corpora \
+	    scripts/fuzz.sh $(FUZZ_SECONDS) $(FUZZ_TARGETS)
+$(BUILD)/tests/fuzz/%: LDFLAGS += -fsanitize=fuzzer
+$(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(libs)
+	$(call say,LD,$@)
+	$(Q)$(call link,$(LIBS))
 
 $(BUILD)/tests/paper/paper: $(call objs,$(wildcard tests/paper/*.c)) $(libs)
 	$(call say,LD,$@)
@@ -299,10 +294,6 @@ deb: ## Debian packages: controller, workstation, data of both, development, in 
 deb-check: deb ## The packages: same bytes when built again, lintian, used by an ordinary user in a bare Debian root (root, network)
 	$(Q)scripts/setup.sh deb-check
 	$(Q)BUILD=$(BUILD) VERSION=$(VERSION) JOBS=$(JOBS) scripts/deb_check.sh $(DEB_ROOT)
-
-$(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(libs)
-	$(call say,LD,$@)
-	$(Q)$(call link,$(LIBS))
 
 bench: all $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/*.c)) ## Side by side with others, one line each: name ratio unit detail (BENCH_QUICK=1: seconds of it)
 	$(Q)scripts/setup.sh bench
@@ -342,7 +333,7 @@ coverage: ## Line and branch coverage per source file
 
 # The analyzer reads what ships; tests are run under sanitizers instead. What no other step of continuous integration
 # compiles must not fall behind what it tests.
-seldom_src := $(wildcard tests/fuzz/*.c tests/fuzz/coverage/*.c tests/torture/*.c)
+seldom_src := $(wildcard tests/fuzz/*.c tests/torture/*.c)
 lint: lint-compiler lint-tidy ## Layering, documents, the compiler's analyzer, clang-tidy
 lint-compiler: layers docs-check $(BUILD)/messages/.made
 	$(Q)printf '%s\n' $(all_src) | xargs -P $(JOBS) -I{} \

@@ -1,7 +1,7 @@
 // A recording, of forces and of a machine: both readers get every input.
 
 #include "files/recording_csv.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
 {

@@ -1,7 +1,7 @@
 // A model as digloop trace --add writes it and the daemon loads it.
 
 #include "files/model_json.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
 {

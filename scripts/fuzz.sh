@@ -1,5 +1,5 @@
 #!/bin/bash
-# Runs fuzzers that libFuzzer leads by coverage: FUZZERS=FOLDER scripts/fuzz_coverage.sh SECONDS TARGET…
+# Runs fuzzers that libFuzzer leads by coverage: FUZZERS=FOLDER scripts/fuzz.sh SECONDS TARGET…
 # SECONDS are of processor time, each target's own: how busy the machine is changes nothing but how long it takes.
 # Each begins with what tests/fuzz/corpus/TARGET holds and with seeds made of the tree's own examples, and keeps
 # what reached something new in $CORPORA (build/fuzz-corpora). Prints a line a target; what broke one is
@@ -27,8 +27,10 @@ prefixed() { # BYTE FILE…: each file behind the byte that names its reader
 seed() { # TARGET, into the folder it stands in
     local tree=$OLDPWD formats=$OLDPWD/tests/data/formats line cell n=0
     case $1 in
-    dbc) cp "$tree"/config/can/*.dbc "$tree"/tests/data/sealed/*.dbc . ;;
+    dbc | can_map) cp "$tree"/config/can/*.dbc "$tree"/tests/data/sealed/*.dbc . ;;
     recording_csv) cp "$formats"/*recording*.csv . ;;
+    bed_csv) cp "$formats/bed.csv" "$formats/curves.csv" . ;;
+    campaign_yaml) cp "$formats/campaign/campaign.yaml" "$formats/plan.yaml" . ;;
     lcm_log) cp "$formats/daemon.lcm" . ;;
     model_json) cp "$formats/model.json" . ;;
     identity_json) cp "$formats/identity.json" . ;;

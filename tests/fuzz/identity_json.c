@@ -1,7 +1,7 @@
 // An identity as digloop identify writes it, which is also the daemon's state.
 
 #include "files/identity_json.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
 {

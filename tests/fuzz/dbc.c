@@ -1,7 +1,7 @@
 // A DBC: what a machine's maker says of its CAN frames.
 
 #include "firmware_host/bus/dbc.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
 {

@@ -7,7 +7,7 @@
 #include "firmware_host/bus/dbc.h"
 #include "firmware_host/bus/signal_map.h"
 #include "firmware_host/config/config.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 static enum dig_status read_can_map(const char *const path, struct dig_error *const error)
 {

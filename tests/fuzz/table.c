@@ -7,7 +7,7 @@
 #include "tables/load.h"
 #include "tables/schema/seal.h"
 #include "tables/store.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 #include <sqlite3.h>
 #include <string.h>

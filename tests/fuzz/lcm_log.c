@@ -1,7 +1,7 @@
 // An LCM log: its samples as a recording, and its other messages one by one.
 
 #include "files/lcm/lcm_log.h"
-#include "tests/fuzz/coverage/as_file.h"
+#include "tests/fuzz/as_file.h"
 
 #define IGNORE(type)                                                                               \
     static void ignore_##type(void *context, int64_t time_us, const digsight_##type##_t *message)  \

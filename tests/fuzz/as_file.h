@@ -9,18 +9,24 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#define AS_FILE_PATH 256
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/// The file that holds data from now on. Campaigns and models name others: none lies beside it.
+/// The file that holds data from now on: campaign.yaml, as a campaign must be called, in a folder
+/// of its own. Campaigns and models name others: none lies beside it.
 static inline const char *as_file(const uint8_t *const data, const size_t size)
 {
-    static char path[256];
+    static char path[AS_FILE_PATH];
     if (path[0] == '\0') {
-        const char *const folder = getenv("FUZZ_DIR");
-        (void)snprintf(path, sizeof path, "%s/input.%d", folder != NULL ? folder : ".",
-                       (int)getpid());
+        const char *const disk = getenv("FUZZ_DIR");
+        const int         folder =
+            snprintf(path, sizeof path, "%s/input.%d", disk != NULL ? disk : ".", (int)getpid());
+        (void)mkdir(path, 0777);
+        (void)snprintf(path + folder, sizeof path - (size_t)folder, "/campaign.yaml");
     }
     FILE *const file = fopen(path, "wb");
     if (file == NULL || fwrite(data, 1, size, file) != size || fclose(file) != 0) {
