@@ -6,8 +6,6 @@
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 
-#include <string.h>
-
 static void passes(const struct dig_machine *const machine)
 {
     struct dig_error error = { "untouched" };
@@ -18,12 +16,8 @@ static void passes(const struct dig_machine *const machine)
 static void is_refused(const struct dig_machine *const machine, const char *const starts_with)
 {
     struct dig_error error = { "" };
-    assert_int_equal(dig_geometry_check(machine, &error), DIG_EINVAL);
+    assert_refused_by(dig_geometry_check(machine, &error), error, DIG_EINVAL, starts_with);
     assert_int_equal(dig_geometry_check(machine, NULL), DIG_EINVAL);
-    if (strncmp(error.text, starts_with, strlen(starts_with)) != 0) {
-        fail_msg("\"%s\" does not start with \"%s\"", error.text, starts_with);
-    }
-    assert_contains(error.text, "expected");
 }
 
 TEST(what_could_be_built_passes)
@@ -34,41 +28,38 @@ TEST(what_could_be_built_passes)
 
 TEST(slips_of_a_digit_a_sign_or_a_unit_are_refused_by_their_key)
 {
-    const struct dig_machine good = model_machine();
-    struct dig_machine       m    = good;
-
-    m.cylinder[DIG_JOINT_BOOM].max_length_m = m.cylinder[DIG_JOINT_BOOM].min_length_m + 0.04;
-    is_refused(&m, "cylinders.boom.max_length_m: from 1.96 to 2, expected to move the boom");
-    m                                      = good;
-    m.cylinder[DIG_JOINT_ARM].min_length_m = m.cylinder[DIG_JOINT_ARM].max_length_m - 0.04;
-    is_refused(&m, "cylinders.arm.max_length_m: from ");
-    m                                  = good;
-    m.cylinder[DIG_JOINT_BOOM].eye_m.x = 12.0;
-    is_refused(&m, "cylinders.boom.max_length_m: from ");
-    m                                     = good;
-    m.cylinder[DIG_JOINT_BUCKET].base_m.x = -2.7;
-    is_refused(&m, "cylinders.bucket.max_length_m: from ");
-    m                                      = good;
-    m.cylinder[DIG_JOINT_ARM].max_length_m = 5.6;
-    is_refused(&m, "cylinders.arm.max_length_m: 5.6, expected less than twice");
-    m                 = good;
-    m.four_bar.link_m = 0.2;
-    is_refused(&m, "four_bar: its linkage does not close at ");
-    m                              = good;
-    m.link[DIG_JOINT_BOOM].com_m.x = 26.0;
-    is_refused(&m, "boom.com_m: 26 m from the pin, expected at most the 7.06");
-    m                                  = good;
-    m.link[DIG_JOINT_ARM].inertia_kgm2 = 30800.0;
-    is_refused(&m, "arm.inertia_kgm2: 3.08e+04, expected at most");
-    m                                 = good;
-    m.link[DIG_JOINT_BUCKET].length_m = 900.0;
-    is_refused(&m, "bucket.length_m: 900, expected at most twice the arm's, 5.78");
-    m                             = good;
-    m.link[DIG_JOINT_ARM].min_rad = m.link[DIG_JOINT_ARM].max_rad - 2.0 * DIG_RAD_PER_DEG;
-    is_refused(&m, "arm.max_deg: 2 degrees above min_deg, expected 10 or more");
-    m          = good;
-    m.weight_N = 15990.0;
-    is_refused(&m, "ground.weight_N: 1.599e+04, expected more than the 3.169e+04 N");
+    const struct dig_machine   good        = model_machine();
+    struct dig_machine         m           = good;
+    struct dig_cylinder *const boom        = &m.cylinder[DIG_JOINT_BOOM];
+    struct dig_cylinder *const arm         = &m.cylinder[DIG_JOINT_ARM];
+    struct dig_cylinder *const bucket      = &m.cylinder[DIG_JOINT_BUCKET];
+    const double               two_deg_rad = 2.0 * DIG_RAD_PER_DEG;
+    const struct {
+        const char *says;
+        double     *at, wrong;
+    } number[] = {
+        { "cylinders.boom.max_length_m: from 1.96 to 2, expected to move the boom",
+          &boom->max_length_m, boom->min_length_m + 0.04 },
+        { "cylinders.arm.max_length_m: from ", &arm->min_length_m, arm->max_length_m - 0.04 },
+        { "cylinders.boom.max_length_m: from ", &boom->eye_m.x, 12.0 },
+        { "cylinders.bucket.max_length_m: from ", &bucket->base_m.x, -2.7 },
+        { "cylinders.arm.max_length_m: 5.6, expected less than twice", &arm->max_length_m, 5.6 },
+        { "four_bar: its linkage does not close at ", &m.four_bar.link_m, 0.2 },
+        { "boom.com_m: 26 m from the pin, expected at most the 7.06",
+          &m.link[DIG_JOINT_BOOM].com_m.x, 26.0 },
+        { "arm.inertia_kgm2: 3.08e+04, expected at most", &m.link[DIG_JOINT_ARM].inertia_kgm2,
+          30800.0 },
+        { "bucket.length_m: 900, expected at most twice the arm's, 5.78",
+          &m.link[DIG_JOINT_BUCKET].length_m, 900.0 },
+        { "arm.max_deg: 2 degrees above min_deg, expected 10 or more",
+          &m.link[DIG_JOINT_ARM].min_rad, m.link[DIG_JOINT_ARM].max_rad - two_deg_rad },
+        { "ground.weight_N: 1.599e+04, expected more than the 3.169e+04 N", &m.weight_N, 15990.0 },
+    };
+    for (size_t i = 0; i < sizeof number / sizeof number[0]; i++) {
+        *number[i].at = number[i].wrong;
+        is_refused(&m, number[i].says);
+        m = good;
+    }
 }
 
 // A stroke from where the range begins to a part of the way: the lengths are the model's.

@@ -4,9 +4,6 @@
 
 #include "tests/testlib.h"
 
-#include <stdio.h>
-#include <string.h>
-
 static struct dig_scene plausible(void)
 {
     return (struct dig_scene){
@@ -26,43 +23,38 @@ static struct dig_scene plausible(void)
 static void expect_refusal(const struct dig_scene *const scene, const char *const starts_with)
 {
     struct dig_error e = { "" };
-    assert_int_equal(dig_scene_check(scene, &e), DIG_EINVAL);
-    if (strncmp(e.text, starts_with, strlen(starts_with)) != 0) {
-        fail_msg("\"%s\" does not start with \"%s\"", e.text, starts_with);
-    }
-    assert_non_null(strstr(e.text, "expected"));
+    assert_refused_by(dig_scene_check(scene, &e), e, DIG_EINVAL, starts_with);
 }
 
 TEST(what_cannot_be_computed_is_refused_by_its_key)
 {
     struct dig_scene s = plausible();
     assert_int_equal(dig_scene_check(&s, NULL), DIG_OK);
-
-    s.material.young_Pa = -1.0;
-    expect_refusal(&s, "material.young_Pa: -1");
-    s                      = plausible();
-    s.material.restitution = NAN;
-    expect_refusal(&s, "material.restitution");
-    s             = plausible();
-    s.box.y_max_m = s.box.y_min_m + 0.01;
-    expect_refusal(&s, "box_m.y");
-    s               = plausible();
+    const struct {
+        const char *key;
+        double     *at, wrong;
+    } number[] = {
+        { "material.young_Pa: -1", &s.material.young_Pa, -1.0 },
+        { "material.restitution", &s.material.restitution, NAN },
+        { "box_m.y", &s.box.y_max_m, s.box.y_min_m + 0.01 },
+        { "trajectories[0].phases[0].duration_s", &s.trajectory[0].phase[0].duration_s, 0.0 },
+        { "output_s", &s.output_s, 0.05 },
+    };
+    for (size_t i = 0; i < sizeof number / sizeof number[0]; i++) {
+        *number[i].at = number[i].wrong;
+        expect_refusal(&s, number[i].key);
+        s = plausible();
+    }
     s.bucket.points = 2;
     expect_refusal(&s, "bucket.profile_m");
     s               = plausible();
     s.bucket.x_m[2] = s.bucket.x_m[1];
     s.bucket.z_m[2] = s.bucket.z_m[1];
     expect_refusal(&s, "bucket.profile_m[2]");
-    s                                   = plausible();
-    s.trajectory[0].phase[0].duration_s = 0.0;
-    expect_refusal(&s, "trajectories[0].phases[0].duration_s");
     s               = plausible();
     s.trajectory[1] = s.trajectory[0];
     s.trajectories  = 2;
     expect_refusal(&s, "trajectories[1].name");
-    s          = plausible();
-    s.output_s = 0.05;
-    expect_refusal(&s, "output_s");
 }
 
 TEST(tooth_is_the_first_point_and_trajectories_are_found)
