@@ -31,12 +31,14 @@
 #define FLIGHT_ns NS_PER_S // of real time: bytes a terminal has not given up by then are lost
 #define STUCK_ns  (300LL * NS_PER_S) // of real time, without anybody sleeping
 
-// A thread of a program under test. Two files tell whether it slept all the while between two
-// looks: its state, and how often it has run. Where there is no schedstat, `status` tells both.
+// A thread of a program under test. Its state, and how often it had run when it was last seen
+// asleep, tell whether it slept all the while between two looks. Where there is no schedstat,
+// `status` tells both.
 struct task {
-    int  pid, tid, slot, stat_fd, runs_fd;
-    long runs;
+    int  pid, tid, slot, where_fd, stat_fd, runs_fd;
+    long runs; // NEVER: not seen asleep yet; BY_CLOCK: it sleeps in its slot
 };
+enum { NEVER = -1, BY_CLOCK = -2 };
 
 struct watch {
     struct sim *sim;
@@ -57,13 +59,20 @@ static int64_t real_ns(void)
     return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
+static void close_task(const struct task *const t)
+{
+    const int fd[] = { t->where_fd, t->stat_fd, t->runs_fd };
+    for (size_t i = 0; i < sizeof fd / sizeof fd[0]; i++) {
+        if (fd[i] >= 0) {
+            (void)close(fd[i]);
+        }
+    }
+}
+
 static void forget(struct watch *const w)
 {
     for (size_t i = 0; i < w->tasks; i++) {
-        (void)close(w->task[i].stat_fd);
-        if (w->task[i].runs_fd >= 0) {
-            (void)close(w->task[i].runs_fd);
-        }
+        close_task(&w->task[i]);
     }
     w->tasks   = 0;
     w->listed  = false;
@@ -112,13 +121,14 @@ static void list_program(struct watch *const w, const int pid)
         if (tid <= 0) {
             continue;
         }
-        struct task t = { .pid = pid, .tid = tid, .slot = slot_of(w->sim, tid), .runs_fd = -1 };
+        struct task t = { .pid = pid, .tid = tid, .slot = slot_of(w->sim, tid), .runs = NEVER };
+        t.where_fd    = open_of(pid, tid, "wchan");
         t.runs_fd     = open_of(pid, tid, "schedstat");
         t.stat_fd     = open_of(pid, tid, t.runs_fd >= 0 ? "stat" : "status");
         if (t.stat_fd >= 0) {
             w->task[w->tasks++] = t;
-        } else if (t.runs_fd >= 0) {
-            (void)close(t.runs_fd);
+        } else {
+            close_task(&t);
         }
     }
     if (folder != NULL) {
@@ -160,36 +170,46 @@ static void list_tasks(struct watch *const w)
     w->listed = true;
 }
 
-// How often a sleeping task has run so far; -1: it does not sleep. Zombies sleep well.
-static long look(const struct task *const t, bool *const gone)
+// Its text; empty when there is none.
+static bool look(const int fd, char text[], const size_t size)
 {
-    char          text[4096];
-    const ssize_t n = pread(t->stat_fd, text, sizeof text - 1, 0);
-    if (n <= 0) {
+    const ssize_t n     = fd >= 0 ? pread(fd, text, size - 1, 0) : 0;
+    text[n > 0 ? n : 0] = '\0';
+    return n > 0;
+}
+
+// Zombies sleep well.
+static bool sleeps(const struct task *const t, bool *const gone)
+{
+    char text[4096];
+
+    // What costs half of the state, where it is enough: who waits there sleeps.
+    if (look(t->where_fd, text, sizeof text) &&
+        (strncmp(text, "futex_", 6) == 0 || strncmp(text, "poll_", 5) == 0)) {
+        return true;
+    }
+    if (!look(t->stat_fd, text, sizeof text)) {
         *gone = true;
-        return -1;
+        return false;
     }
-    text[n] = '\0';
+    const char *const state = t->runs_fd < 0 ? strstr(text, "State:\t") : strrchr(text, ')');
+    return state != NULL && strchr("SZX", state[t->runs_fd < 0 ? 7 : 2]) != NULL;
+}
+
+// How often it was given a processor, or gave one back. Less than none: it is gone.
+static long runs_of(const struct task *const t)
+{
+    char text[4096];
     if (t->runs_fd < 0) {
-        const char *const state = strstr(text, "State:\t");
-        const char *const by    = strstr(text, "voluntary_ctxt_switches:");
-        const char *const not   = strstr(text, "nonvoluntary_ctxt_switches:");
-        if (state == NULL || by == NULL || not == NULL || strchr("SZX", state[7]) == NULL) {
-            return -1;
-        }
-        return strtol(strchr(by, ':') + 1, NULL, 10) + strtol(strchr(not, ':') + 1, NULL, 10);
+        const char *const by =
+            look(t->stat_fd, text, sizeof text) ? strstr(text, "\nvoluntary_ctxt_switches:") : NULL;
+        const char *const not = by != NULL ? strstr(by, "nonvoluntary_ctxt_switches:") : NULL;
+        return not != NULL
+                   ? strtol(strchr(by, ':') + 1, NULL, 10) + strtol(strchr(not, ':') + 1, NULL, 10)
+                   : NEVER;
     }
-    const char *const paren = strrchr(text, ')');
-    if (paren == NULL || strchr("SZX", paren[2]) == NULL) {
-        return -1;
-    }
-    long long     ran    = 0;
-    long long     waited = 0;
-    long          runs   = -1;
-    char          counts[128];
-    const ssize_t m       = pread(t->runs_fd, counts, sizeof counts - 1, 0);
-    counts[m > 0 ? m : 0] = '\0';
-    return sscanf(counts, "%lld %lld %ld", &ran, &waited, &runs) == 3 ? runs : -1;
+    const char *const last = look(t->runs_fd, text, sizeof text) ? strrchr(text, ' ') : NULL;
+    return last != NULL ? strtol(last, NULL, 10) : NEVER;
 }
 
 // A sleeper is woken by nobody but us.
@@ -198,18 +218,37 @@ static bool sleeps_by_clock(const struct watch *const w, const struct task *cons
     return t->slot >= 0 && atomic_load(&w->sim->slot[t->slot].state) == SIM_SLEEPING;
 }
 
-// True when every thread slept all the while between two looks at all of them: then at one moment
-// all slept, and what sleeps together is woken by the clock alone.
+// True when it sleeps and has not run since it was last seen asleep: its state first, or it might
+// run behind the count.
+static bool sleeps_still(const struct watch *const w, const struct task *const t, bool *const gone)
+{
+    return t->runs == BY_CLOCK ? sleeps_by_clock(w, t) : sleeps(t, gone) && runs_of(t) == t->runs;
+}
+
+// False when it may run. One that was seen asleep and has not run since does not.
+static bool seen_asleep(const struct watch *const w, struct task *const t, bool *const gone)
+{
+    if (t->slot < 0) {
+        t->slot = slot_of(w->sim, t->tid);
+    }
+    const long runs = sleeps_by_clock(w, t) ? BY_CLOCK : runs_of(t);
+    if (runs == NEVER || (runs != t->runs && runs != BY_CLOCK && !sleeps(t, gone))) {
+        *gone |= runs == NEVER;
+        return false;
+    }
+    t->runs = runs;
+    return true;
+}
+
+// True when every thread slept, or waited to run, all the while between two looks at all of them,
+// and slept at the second: then at one moment all slept, and what sleeps together is woken by the
+// clock alone.
 static bool all_sleep(struct watch *const w)
 {
     bool gone = false;
     for (size_t i = 0; i < w->tasks; i++) {
         struct task *const t = &w->task[i];
-        if (t->slot < 0) {
-            t->slot = slot_of(w->sim, t->tid);
-        }
-        t->runs = sleeps_by_clock(w, t) ? -2 : look(t, &gone);
-        if (t->runs == -1) {
+        if (!seen_asleep(w, t, &gone)) {
             // Looked at first the next time: it is the likeliest to run still.
             const struct task busy = *t;
             *t                     = w->task[0];
@@ -219,8 +258,7 @@ static bool all_sleep(struct watch *const w)
         }
     }
     for (size_t i = 0; i < w->tasks; i++) {
-        const struct task *const t = &w->task[i];
-        if (t->runs == -2 ? !sleeps_by_clock(w, t) : look(t, &gone) != t->runs) {
+        if (!sleeps_still(w, &w->task[i], &gone)) {
             w->listed &= !gone;
             return false;
         }
@@ -233,10 +271,9 @@ static bool all_sleep(struct watch *const w)
 static bool none_was_woken(struct watch *const w)
 {
     bool still = w->settled && w->listed && w->threads == atomic_load(&w->sim->threads);
+    bool gone  = false;
     for (size_t i = 0; still && i < w->tasks; i++) {
-        const struct task *const t    = &w->task[i];
-        bool                     gone = false;
-        still = t->runs == -2 ? sleeps_by_clock(w, t) : look(t, &gone) == t->runs;
+        still = sleeps_still(w, &w->task[i], &gone);
     }
     return still;
 }
@@ -343,8 +380,10 @@ static void step(struct watch *const w, const int64_t end_ns)
         if (state == SIM_POLLING) {
             wake_poller(w, next);
         } else if (syscall(SYS_futex, &slot->state, FUTEX_WAKE, 1, NULL, NULL, 0) == 0) {
-            w->listed = false; // not asleep yet, or no more
-            if (w->one_cpu) {
+            // Not asleep yet, or no more.
+            w->listed &=
+                syscall(SYS_tgkill, atomic_load(&slot->pid), atomic_load(&slot->tid), 0) == 0;
+            if (w->one_cpu && !w->listed) {
                 list_tasks(w);
             }
         }
