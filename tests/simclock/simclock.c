@@ -4,6 +4,7 @@
 //   simclock pass SECONDS        lets so much time pass
 //   simclock await PID SECONDS   lets time pass until the program has ended; exits 1 if late
 //   simclock now                 prints the clock, in seconds since its beginning
+//   simclock set SECONDS         sets the calendar's clock forth by so much, or back
 // Exits with 2 for bad usage and 3 when a program computes on and on and no time can pass.
 
 #define _GNU_SOURCE
@@ -427,8 +428,8 @@ static bool has_joined(const struct sim *const sim, const int pid)
 static int usage(void)
 {
     (void)fprintf(stderr,
-                  "usage: DIG_SIMCLOCK=FILE simclock begin|now|joined PID|pass SECONDS|await "
-                  "PID SECONDS\n");
+                  "usage: DIG_SIMCLOCK=FILE simclock begin|now|joined PID|pass SECONDS|set SECONDS|"
+                  "await PID SECONDS\n");
     return 2;
 }
 
@@ -457,6 +458,10 @@ int main(const int argc, char *argv[])
     const int64_t now_ns = atomic_load(&w.sim->now_ns);
     if (strcmp(what, "now") == 0) {
         (void)printf("%.6f\n", 1e-9 * (double)(now_ns - SIM_BEGINS_ns));
+        return 0;
+    }
+    if (strcmp(what, "set") == 0 && argc == 3) {
+        w.sim->utc_ns += (int64_t)(1e9 * strtod(argv[2], NULL));
         return 0;
     }
     if (strcmp(what, "joined") == 0 && argc == 3) {

@@ -43,13 +43,20 @@ log() { # NAME: starts recording LCM into $work/NAME.lcm
     pass 0.1
 }
 
+# liblcm writes what is published into $work/NAME.lcm, whole when the daemon has ended: a third of the work of a network
+# and of a logger on it, which other scripts have.
+logs_itself() { # NAME CONFIG
+    sed -i "s|^lcm:.*|lcm: {url: \"file://$work/$1.lcm?mode=w\"}|" "$work/$2.yaml"
+    logger=
+}
+
 read_log() { # NAME: ends the recording and prints it into $work/NAME.txt
-    stop "$logger" INT
+    [ -z "$logger" ] || stop "$logger" INT
     "$helpers/daemon_log" "$work/$1.lcm" >"$work/$1.txt" 2>"$work/$1.err"
 }
 
-daemon_begins() { # NAME [CONFIG]: recorded into $work/NAME.lcm, its words into $work/NAME.log; until it has sought its bus
-    log "$1"
+daemon_begins() { # NAME [CONFIG]: logs itself, its words into $work/NAME.log; until it has sought its bus
+    logs_itself "$1" "${2-$1}"
     start "$work/$1.log" "$BIN/digsightd" -c "$work/${2-$1}.yaml"
     daemon=$started
     wait_for 5 grep -qE "(waiting for bus|running) \(" "$work/$1.log"
@@ -62,8 +69,8 @@ daemon_ends() { # NAME: by SIGTERM; what it published is in $f
     f=$work/$1.txt
 }
 
-replay() { # NAME: a daemon to the end of its recording, recorded likewise, its words into $work/daemon.log; its exit status
-    log "$1"
+replay() { # NAME: a daemon to the end of its recording, which logs itself, its words into $work/daemon.log; its exit status
+    logs_itself "$1" "$1"
     run "$work/daemon.log" "$BIN/digsightd" -c "$work/$1.yaml"
     local rc=$?
     read_log "$1"
@@ -108,6 +115,11 @@ series() { # N: $digs is the simple dig N times; their truth goes to $work/truth
 
 fault() { # KIND DIG: --fault's value for all of that dig, counted from 1
     awk -v kind="$1" -v contact="${contacts[$2 - 1]}" 'BEGIN { printf "%s@%.2f:12", kind, contact - 2 }'
+}
+
+# Of a configuration, for a rig at $speed times real time. A beat of 4 ms is a third of the default's work.
+paced() {
+    printf 'time_scale: %s\ntick_Hz: 250' "$speed"
 }
 
 # Begins to serve it at $speed times real time; the rig's counts go to $work/NAME.json, its pid to $rig, the time to $began.

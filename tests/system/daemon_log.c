@@ -14,9 +14,10 @@
 //          WITHOUT_FORCE "INPUT" "NOTE" "MISSING"
 //   endings WHOLE ABORTED UNKNOWN
 //   late WORST_LATE_us
+//   utc UTC_s
 //   samples N DURATION_s MAX_GAP_s
-// family and weighted are of the match before them, spread of the prediction, endings and
-// late of the health.
+// family and weighted are of the match before them, spread of the prediction, endings, late and utc
+// of the health.
 
 #include "core/units.h"
 #include "files/lcm/lcm_log.h"
@@ -34,7 +35,7 @@ static void estimate(void *const context, const int64_t time_us, const digsight_
 {
     (void)context;
     (void)time_us;
-    (void)printf("estimate %.4f %d %s %.5f %.6g %.6g %d %d \"%s\" %d\n", (double)m->time_ns * 1e-9,
+    (void)printf("estimate %.6f %d %s %.5f %.6g %.6g %d %d \"%s\" %d\n", (double)m->time_ns * 1e-9,
                  m->phase, name(m->trajectory), m->progress, m->moment_Nm, m->sigma_moment_Nm,
                  m->dig_count, m->force_valid, m->missing, m->motion);
 }
@@ -105,6 +106,7 @@ static void health(void *const context, const int64_t time_us, const digsight_he
                  m->latency_p99_us, m->without_force, m->input, m->note, m->missing_signals);
     (void)printf("endings %d %d %d\n", m->digs_whole, m->digs_aborted, m->digs_unknown);
     (void)printf("late %.1f\n", m->worst_late_us);
+    (void)printf("utc %.3f\n", 1e-6 * (double)m->utc_us);
 }
 
 int main(const int argc, char *argv[])
