@@ -29,7 +29,7 @@ trace() { # NAME: into $work/NAME.json and the model $work/NAME.model.json
 run() { # NAME MACHINE MORE DIG…: $estimate and $prediction are its errors
     local name=$1 as=$2 more=$3 rig daemon
     shift 3
-    config "$name" "$modbus" "time_scale: $speed
+    config "$name" "$modbus" "$(paced)
 $more"
     sed -i "s|^table:.*|table: $table|" "$work/$name.yaml"
     daemon_begins "$name"

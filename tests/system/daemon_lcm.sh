@@ -15,7 +15,7 @@ fi
 make_digs
 speed=4
 series 3
-config tcp "$modbus" "time_scale: $speed"
+config tcp "$modbus" "$(paced)"
 route() { # add|del
     ip route "$1" 239.255.76.67 dev lo
 }
@@ -48,7 +48,7 @@ check "what could not be sent is counted" within "$unsent" \
 check "it was heard nothing of meanwhile" awk -v least="$off_s" '
     $1 == "estimate" { if (n++ && $2 - before > gap) gap = $2 - before; before = $2 } END { exit !(gap >= 0.8 * least) }' "$f"
 check "nothing else was lost" [ "$(last health "$f" $h_lost)" = 0 ]
-check "no tick waited for the network" within "$(last health "$f" $h_missing)" 0 1000
+check "no tick waited for the network" within "$(last health "$f" $h_missing)" 0 250
 check "all three digs are told" [ "$(last health "$f" $h_digs)" = 3 ]
 check "the gravel is identified by the digs after it" identified "$f"
 finish

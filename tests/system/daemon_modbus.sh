@@ -4,7 +4,7 @@
 
 make_digs
 speed=4
-config tcp "$modbus" "time_scale: $speed"
+config tcp "$modbus" "$(paced)"
 daemon_begins tcp
 check "a bus that is absent is said" grep -q "waiting for bus" "$work/tcp.log"
 check "and why" grep -q "127.0.0.1:$port.*refused" "$work/tcp.log"
@@ -24,7 +24,7 @@ check "only functions that read were asked for" \
 
 # Pressures in another block of registers, at half the rate.
 config blocks "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_blocks.yaml}}" \
-    "time_scale: $speed"
+    "$(paced)"
 daemon_begins blocks
 digs=("$work/simpleA.csv")
 serve_series blocks --modbus-tcp "127.0.0.1:$port" --start-delay 2
@@ -41,7 +41,7 @@ check "a sample comes of the slower block, not of every request" \
 sed -E -e 's/register: 0, registers: 5/register: 0, registers: 12/' -e 's/register: 1005, registers: 6/register: 1005, registers: 4/' \
     -e '/registers: 1, poll_Hz: 1/d' -e '/bucket_head_Pa/s/1009/9/' -e '/bucket_rod_Pa/s/1010/10/' \
     config/signals/modbus_blocks.yaml >"$work/force.map.yaml"
-config force "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: force.map.yaml}}" "time_scale: $speed"
+config force "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: force.map.yaml}}" "$(paced)"
 series 1
 start_series force --modbus-tcp "127.0.0.1:$port" --start-delay 1 \
     --fault "far@$(awk -v c="${contacts[0]}" 'BEGIN { printf "%.2f:%.2f", c - 3, 9 }')"

@@ -1,13 +1,14 @@
 #!/bin/bash
-# What goes wrong on Modbus while a machine digs, a table that changes under the daemon, a disk without
-# room: nothing wrong is published as good, every loss is counted, the next dig identifies the gravel.
+# What goes wrong on Modbus before and while a machine digs, what its server loses, damages or lets stand, a table that changes under
+# the daemon, a disk without room: nothing wrong is published as good, every loss is counted, the next dig identifies the
+# gravel.
 . tests/system/daemon_lib.bash
 
 make_digs
 "$helpers/daemon_data" "$scene" "$work" other >>"$work/data.log" 2>&1
 speed=4
-series 6
-config tcp "$modbus" "time_scale: $speed
+series 9
+config tcp "$modbus" "$(paced)
 match: {state: full/match.json}"
 mkdir "$work/full" # where nothing can be written: a disk without room, as far as the daemon can tell
 mkdir "$work/full/match.json.part"
@@ -29,18 +30,33 @@ change_tables() {
     pass 1
     rm "$work/table.sqlite"
 }
-# Digs: lost answers, exceptions, answers 30 ms late, a server that goes away in the middle, nothing.
-start_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 --fault "$(fault drop=0.02 1)" --fault "$(fault exception=0.1 2)" \
-    --fault "$(fault slow=0.03 3)" --fault "missing@$(awk -v c="${contacts[3]}" 'BEGIN { print c + 3 }'):4"
+# In free air values that are none and a server that is silent. Digs: lost answers, exceptions, answers 30 ms late, half of the answers lost, a server that goes away in the middle,
+# damaged ones, registers that stand still, pressures alone that do, nothing.
+start_series tcp --modbus-tcp "127.0.0.1:$port" --start-delay 2 \
+    --fault not-available@0.5:1 --fault out-of-range@2:1 --fault missing@3.5:1.5 --fault "$(fault drop=0.1 1)" --fault "$(fault exception=0.1 2)" \
+    --fault "$(fault slow=0.03 3)" --fault "missing@$(awk -v c="${contacts[4]}" 'BEGIN { print c + 3 }'):4" \
+    --fault "$(fault drop=0.5 4)" --fault "$(fault corrupt=0.1 6)" --fault "$(fault frozen 7)" --fault "$(fault stuck-pressures 8)"
 change_tables
 ends "$rig"
 daemon_ends tcp
 judge tcp
 digs_told=$(last health "$f" $h_digs)
-check "the digs after the faults identify the gravel" \
-    [ "$(judged dig 6 "$digs_told")$(judged dig 6 $((digs_told - 1)))" = 11 ]
-check "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" 3 "$(rig modbus_unanswered)"
-check "exceptions are counted" [ "$(last health "$f" $h_malformed)" = "$(rig modbus_excepted)" ]
+check "a dig with exceptions identifies the gravel" [ "$(judged dig 6 2)" = 1 ]
+check "so does one with late answers" [ "$(judged dig 6 3)" = 1 ]
+check "one with damaged answers, behind the one with a hole" [ "$(judged dig 6 6)" = 1 ]
+check "and the one after them all" [ "$(judged dig 6 "$digs_told")" = 1 ]
+# A request whose answer is lost is one that timed out; one at the very end may wait for it still.
+check "requests without an answer are counted" within "$(last health "$f" $h_timeouts)" \
+    $(($(rig modbus_unanswered) - 1)) "$(rig modbus_unanswered)"
+check "exceptions and damaged answers are counted" eval '[ "$(rig modbus_excepted)" -gt 20 ] && [ "$(rig modbus_damaged)" -gt 20 ] &&
+    [ "$(last health "$f" $h_malformed)" = $(($(rig modbus_excepted) + $(rig modbus_damaged))) ]'
+check "values that are not available are counted" within "$(last health "$f" $h_not_available)" 100 1e6
+check "values out of range are counted" within "$(last health "$f" $h_out_of_range)" 100 1e6
+check "ticks without a fresh sample are counted" within "$(last health "$f" $h_missing)" 50 1e6
+check "the state is published as it changes" eval '[ "$(grep -c "^health waiting_for_bus" "$f")" -ge 4 ]'
+check "no estimate is made of what was dropped" eval '[ "$(grep -c ^estimate "$f")" -lt "$(last samples "$f" 2)" ]'
+check "a person is told" grep -q "dropped so far: [1-9]" "$work/tcp.log"
+check "frozen registers are counted" within "$(last health "$f" $h_frozen)" 100 1e6
 check "a table that is cut off is refused, and said" \
     eval '[ "$(last health "$f" $h_reloads_refused)" = 1 ] && grep -q "reload refused, the table before stays: .*table.sqlite" "$work/tcp.log"'
 check "a good one is taken without a gap, and so is another one in its place" \
@@ -51,9 +67,13 @@ check "nothing was lost on the way" [ "$(last health "$f" $h_lost)" = 0 ]
 
 # The server is killed in a dig and comes back; what is known survives the daemon.
 cp "$work/good.sqlite" "$work/table.sqlite"
-sed -i 's|full/match.json|match.json|' "$work/tcp.yaml"
+config tcp "$modbus" "$(paced)
+match: {state: match.json}"
 series 2
-daemon_begins gone tcp
+log gone
+start "$work/gone.log" "$BIN/digsightd" -c "$work/tcp.yaml"
+daemon=$started
+wait_for 5 grep -q "waiting for bus" "$work/gone.log"
 # It stands still until the daemon, which waits up to 5 s between two attempts, has surely found it.
 start_series first --modbus-tcp "127.0.0.1:$port" --start-delay 6
 pass "$(awk -v c="${contacts[0]}" -v speed="$speed" 'BEGIN { print 6 + (c + 4) / speed }')"

@@ -8,7 +8,7 @@ speed=4
 series 2
 sed 's/^function: 4/function: 3/' config/signals/modbus_default.yaml >"$work/holding.yaml"
 config rtu "{kind: modbus-rtu, modbus: {device: $work/controller, baud: 115200, parity: none, poll_Hz: 200, map: holding.yaml}}" \
-    "time_scale: $speed"
+    "$(paced)"
 # Bytes on a terminal are counted until they are read.
 export DIG_SIMCLOCK_TERMINALS=1
 start "$work/socat.log" socat "pty,raw,echo=0,link=$work/controller" "pty,raw,echo=0,link=$work/rig"

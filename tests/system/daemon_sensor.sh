@@ -34,7 +34,7 @@ check "and from the daemon's log" near "$direct" "$(identify "$work/csv.lcm" --m
 
 # The same from a bus.
 config bus "{kind: modbus-tcp, modbus: {address: \"127.0.0.1:$port\", poll_Hz: 400, map: $PWD/config/signals/modbus_sensor.yaml}}" \
-    "time_scale: $speed"
+    "$(paced)"
 start "$work/rigbus.err" "$BIN/digrig" serve "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
     --modbus-tcp "127.0.0.1:$port" --speed "$speed" --start-delay 1
 rig=$started
