@@ -18,8 +18,9 @@ check "where there is room the gravel known is kept" [ -s "$work/match.json" ]
 # Room for what is there and one page more.
 mkdir "$work/disk"
 pages=$((($(stat -c %s "$work/match.json") + 4095) / 4096 + 1))
-config full "{kind: replay, replay: {file: four.csv, speed: 5}}" "match: {state: disk/match.json}"
-log full
+config full "{kind: replay, replay: {file: four.csv, speed: 5}}" "match: {state: disk/match.json}
+tick_Hz: 250"
+logs_itself full full
 # shellcheck disable=SC2016 # expanded by the inner shell
 start "$work/full.log" unshare -Urm bash -c 'mount -t tmpfs -o size="$1" tmpfs "$2/disk" && cp -p "$2/match.json" "$2/disk" &&
     exec "$3" -c "$2/full.yaml"' - $((pages * 4096)) "$work" "$(realpath "$BIN/digsightd")"

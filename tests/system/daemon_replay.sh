@@ -3,15 +3,18 @@
 . tests/system/daemon_lib.bash
 
 make_digs
+beat="tick_Hz: 250" # of all but the first: a quarter of the default's work
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config csv "{kind: replay, replay: {file: run.csv, speed: 5}}"
-config again "{kind: replay, replay: {file: csv.lcm, speed: 5}}"
+config again "{kind: replay, replay: {file: csv.lcm, speed: 5}}" "$beat"
 
 check "--check loads everything and says what it found" \
     eval '"$BIN/digsightd" -c "$work/csv.yaml" --check >"$work/check.txt" &&
           grep -q "scene rig" "$work/check.txt" && grep -q "zx200_trench" "$work/check.txt"'
 
-check "a replay ends by itself with exit status 0" replay csv
+log csv # over a network, as it is used
+check "a replay ends by itself with exit status 0" run "$work/daemon.log" "$BIN/digsightd" -c "$work/csv.yaml"
+read_log csv
 rows=$(($(grep -vc '^#' "$work/run.csv") - 1))
 # LCM promises nothing: a receiver that does not get its turn in time loses messages.
 check "the lines of the recording are published as samples" \
@@ -62,14 +65,16 @@ check "the match says that it is of moment and forces" [ "$(forces "$work/csv.tx
 
 "$BIN/digrig" record "$work/simpleA.csv" "$work/simpleA.csv" "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" \
     -o "$work/thrice.csv" 2>"$work/rig.err"
-config thrice "{kind: replay, replay: {file: thrice.csv, speed: 10}}" "match: {state: thrice.json}"
+config thrice "{kind: replay, replay: {file: thrice.csv, speed: 10}}" "match: {state: thrice.json}
+$beat"
 replay thrice
 check "three simple digs are matched together" [ "$(awk '$1 == "match" { n = $(NF - 2) } END { print n }' "$work/thrice.txt")" = 3 ]
 check "which narrows the interval" awk '$1 == "match" && !$NF { w = $8 - $7; first = first ? first : w } END { exit !(w < first) }' "$work/thrice.txt"
 check "and keeps the gravel" identified "$work/thrice.txt"
 check "and the digs in the state file" [ "$(grep -c moment_Nm "$work/thrice.json")" = 3 ]
 check "with their forces" [ "$(grep -c '"force": {' "$work/thrice.json")" = 3 ]
-config fourth "{kind: replay, replay: {file: run.csv, speed: 10}}" "match: {state: thrice.json}"
+config fourth "{kind: replay, replay: {file: run.csv, speed: 10}}" "match: {state: thrice.json}
+$beat"
 replay fourth
 check "a daemon started anew goes on with them, forces and all" \
     [ "$(awk '$1 == "match" && $3 == 0 { n = $(NF - 2) } END { print n }' "$work/fourth.txt") $(forces "$work/fourth.txt")" = "4 1" ]
@@ -87,7 +92,7 @@ awk -F, '/^[^0-9]/ { print; next } $1 < 0.7 * end' \
     end="$(tail -n 1 "$work/actual.csv" | cut -d, -f1)" "$work/actual.csv" >"$work/half.csv"
 "$BIN/digrig" record "$work/simpleA.csv" "$work/half.csv" "$work/actual.csv" --machine "$machine" \
     -o "$work/aborts.csv" 2>"$work/rig.err"
-config aborts "{kind: replay, replay: {file: aborts.csv, speed: 10}}"
+config aborts "{kind: replay, replay: {file: aborts.csv, speed: 10}}" "$beat"
 replay aborts
 check "a dig that was aborted is counted as such" [ "$(endings "$work/aborts.txt")" = "1 1 0" ]
 check "and said" grep -Eq 'dig 2 \(actual\): aborted at [67][0-9] % of its path' "$work/daemon.log"
@@ -120,7 +125,7 @@ check "digloop trace finds each dig of a campaign in the log" \
     within "$(tr -d '\n' <"$work/trace.json" | sed -nE 's/.*"error_before": \{"holdout": ([0-9.]+).*/\1/p')" 0 0.1
 # A machine whose bucket cylinder alone is instrumented.
 grep -v '^#' "$work/run.csv" | cut -d, -f1-4,9- >"$work/bucket.csv"
-config bucket "{kind: replay, replay: {file: bucket.csv, speed: 5}}"
+config bucket "{kind: replay, replay: {file: bucket.csv, speed: 5}}" "$beat"
 bare='boom_head_Pa, boom_rod_Pa, arm_head_Pa, arm_rod_Pa'
 "$BIN/digsightd" -c "$work/bucket.yaml" --check >"$work/check.txt"
 check "--check says what is not measured" grep -q "not measured: $bare;" "$work/check.txt"
@@ -181,7 +186,8 @@ check "a table without a machine does not tell the scale" eval 'shift_of --table
 # A table dug at several depths and attacks: a simple dig at 1.12 of its depth, the same again, one at 1.7.
 "$helpers/daemon_data" "$scene" "$work" ways >"$work/ways.log" 2>&1
 "$BIN/digrig" record "$work/deep.csv" "$work/deep.csv" "$work/far.csv" --machine "$machine" -o "$work/ways.csv" 2>"$work/rig.err"
-config ways "{kind: replay, replay: {file: ways.csv, speed: 20}}" "publish: {estimate_every: 10}"
+config ways "{kind: replay, replay: {file: ways.csv, speed: 20}}" "publish: {estimate_every: 10}
+$beat"
 sed -i 's/table.sqlite/ways.sqlite/' "$work/ways.yaml"
 replay ways
 # DEPTH, ATTACK_deg, MATCHED_DEPTH, MATCHED_ATTACK_deg of the last match: a dig in the table, whose depth is told to a tenth.
