@@ -36,7 +36,9 @@ trap 'tmux kill-server 2>/dev/null; kill ${prometheus-} ${daemon-} 2>/dev/null; 
 make_digs
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config run "{kind: replay, replay: {file: run.csv, speed: 1}}" "tick_Hz: 200"
-replay run
+log run # by lcm-logger, as a person has it
+run "$work/daemon.log" "$BIN/digsightd" -c "$work/run.yaml"
+read_log run
 
 # The log as it would be in the middle of the second dig: cut behind the 30th prediction of it.
 cut=$(grep -abo DIGSIGHT_PREDICTION "$work/run.lcm" | sed -n "$(($(grep ^prediction "$work/run.txt" | grep -n '1 actual 0\.[1-9]' |
@@ -97,7 +99,7 @@ begin "--lcm-url '$lcm'"
 check "where no daemon is, it says so" until_shows '^Health    no message of a daemon was heard yet'
 "$BIN/digwatch" --prometheus "$work/health.prom" --lcm-url "$lcm" 2>"$work/prom.err" &
 prometheus=$!
-config live "{kind: replay, replay: {file: run.csv, speed: 5}}"
+config live "{kind: replay, replay: {file: run.csv, speed: 8}}"
 "$BIN/digsightd" -c "$work/live.yaml" 2>"$work/daemon.log" &
 daemon=$!
 check "a daemon is shown as it runs" until_shows '^running, replay'
