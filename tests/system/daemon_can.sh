@@ -4,15 +4,12 @@
 . tests/system/daemon_lib.bash
 in_uml "$@"
 
-# Two LCM networks: the daemons do not know of each other.
-can=$lcm tcp=${lcm/:2/:4}
 # The rig runs without noise here: what is left between CAN and Modbus is CAN's quantisation. A machine
 # whose sensors are perfect makes the published sigma just that.
 sed -E 's/(pressure_sigma_Pa:) *[0-9.e+]+/\1 1/; s/(angle_sigma_rad:) *[0-9.e+-]+/\1 1e-9/' "$machine" >"$work/perfect.yaml"
 config can "{kind: can, can: {interface: vcan0, dbc: $PWD/config/can/zx200.dbc, map: $PWD/config/signals/zx200_can.yaml}}"
 sed -i "s|^machine:.*|machine: perfect.yaml|" "$work/can.yaml"
 config absent "{kind: can, can: {interface: vcan7, dbc: $PWD/config/can/zx200.dbc, map: $PWD/config/signals/zx200_can.yaml}}"
-lcm=$tcp
 config tcp "$modbus"
 
 # A bus that is not there at first: the interface is made while the daemon waits.
@@ -46,8 +43,8 @@ check "all this while the daemon ran on" [ "$status" = 0 ]
 speed=2
 echo "time_scale: $speed" | tee -a "$work/tcp.yaml" >>"$work/can.yaml"
 before=$(cat /sys/class/net/vcan0/statistics/tx_packets)
-lcm=$can; log can; logger_can=$logger
-lcm=$tcp; log tcp; logger_tcp=$logger
+logs_itself can can
+logs_itself tcp tcp
 start "$work/candump.log" candump -e vcan0,0:0,#FFFFFFFF
 dump=$started
 start "$work/can.log" "$BIN/digsightd" -c "$work/can.yaml"
@@ -60,8 +57,8 @@ pass 0.2
 stop "$daemon_can"
 stop "$daemon_tcp"
 stop "$dump"
-logger=$logger_can; read_log can
-logger=$logger_tcp; read_log tcp
+read_log can
+read_log tcp
 
 sent=$(sed -E 's/.*"can_sent": ([0-9]+).*/\1/' "$work/rig.json")
 check "the bus carried the rig's frames and no other" \
