@@ -43,8 +43,8 @@ log() { # NAME: starts recording LCM into $work/NAME.lcm
     pass 0.1
 }
 
-# liblcm writes what is published into $work/NAME.lcm, whole when the daemon has ended: a third of the work of a network
-# and of a logger on it, which other scripts have.
+# liblcm writes what is published into $work/NAME.lcm, whole when the daemon has ended. Without a network and a logger on
+# it, which daemon_replay, daemon_lcm, daemon_talk and digwatch have: a third of the work in User Mode Linux.
 logs_itself() { # NAME CONFIG
     sed -i "s|^lcm:.*|lcm: {url: \"file://$work/$1.lcm?mode=w\"}|" "$work/$2.yaml"
     logger=
@@ -117,7 +117,7 @@ fault() { # KIND DIG: --fault's value for all of that dig, counted from 1
     awk -v kind="$1" -v contact="${contacts[$2 - 1]}" 'BEGIN { printf "%s@%.2f:12", kind, contact - 2 }'
 }
 
-# Of a configuration, for a rig at $speed times real time. A beat of 4 ms is a third of the default's work.
+# In a configuration, for a rig at $speed times real time: a quarter of the default's beats, each of 4 ms.
 paced() {
     printf 'time_scale: %s\ntick_Hz: 250' "$speed"
 }

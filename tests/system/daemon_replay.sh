@@ -3,7 +3,7 @@
 . tests/system/daemon_lib.bash
 
 make_digs
-beat="tick_Hz: 250" # of all but the first: a quarter of the default's work
+beat="tick_Hz: 250" # of all but the first, which has the default's
 "$BIN/digrig" record "$work/simpleA.csv" "$work/actual.csv" --machine "$machine" -o "$work/run.csv" 2>"$work/rig.err"
 config csv "{kind: replay, replay: {file: run.csv, speed: 5}}"
 config again "{kind: replay, replay: {file: csv.lcm, speed: 5}}" "$beat"
