@@ -135,6 +135,36 @@ static enum dig_status open_depth(const struct dig_whitened_digs *const batch, c
     return status;
 }
 
+// What lasts of the sensors' noise.
+static void fill_lasting(const struct dig_whitened_digs *const batch, const size_t g,
+                         struct dig_whitened_digs_group *const group)
+{
+    const struct dig_lasting *const   noise = &dig_whitened_digs_first(batch, g)->lasting;
+    const struct dig_curve_set *const set   = batch->soil->surface->set;
+    memset(group->lasting, 0, sizeof group->lasting);
+    memcpy(group->lasting_sigma, noise->sigma, sizeof group->lasting_sigma);
+    if (noise->memory_s > 0.0) {
+        double edge_s[DIG_FEATURE_BINS + 1];
+        for (size_t b = 0; b <= DIG_FEATURE_BINS; b++) {
+            edge_s[b] = dig_trajectory_time_s(&set->trajectory[group->trajectory], set->tooth_m,
+                                              (double)b / DIG_FEATURE_BINS);
+        }
+        dig_features_lasting(edge_s, set->smooth_half_s, noise->memory_s, group->lasting);
+    }
+}
+
+// The covariance of two features by that, over the group's amplitude.
+static double lasting_covariance(const struct dig_whitened_digs_group *const group, const size_t a,
+                                 const size_t b)
+{
+    const size_t c     = a / DIG_FEATURE_BINS;
+    const double sigma = group->lasting_sigma[c] / group->amplitude[c];
+    return c == b / DIG_FEATURE_BINS
+               ? sigma * sigma *
+                     group->lasting[a % DIG_FEATURE_BINS * DIG_FEATURE_BINS + b % DIG_FEATURE_BINS]
+               : 0.0;
+}
+
 static enum dig_status fill_group(struct dig_whitened_digs *const batch, const size_t g,
                                   const double feature[][DIG_FEATURES],
                                   const double place[DIG_AXES])
@@ -158,13 +188,15 @@ static enum dig_status fill_group(struct dig_whitened_digs *const batch, const s
     if (status != DIG_OK) {
         return status;
     }
+    fill_lasting(batch, g, group);
     double lower[DIG_FEATURES * DIG_FEATURES];
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) {
             const size_t a   = group->feature[i];
             const size_t b   = group->feature[j];
             lower[i * n + j] = batch->scatter->covariance[group->trajectory][a][b] +
-                               deeper[a] * deeper[b] / (root * root);
+                               deeper[a] * deeper[b] / (root * root) +
+                               lasting_covariance(group, a, b);
         }
         const size_t f   = group->feature[i];
         group->sensor[f] = sqrt(sensor_variance(batch, g, f));
@@ -206,6 +238,7 @@ void dig_whitened_digs_spread(struct dig_whitened_digs *const batch, const doubl
         struct dig_whitened_digs_group *const group = &batch->group[g];
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             group->amplitude[c] *= spread;
+            group->lasting_sigma[c] *= spread;
         }
         for (size_t k = 0; k < group->features; k++) {
             group->sensor[group->feature[k]] *= spread;

@@ -83,3 +83,34 @@ void dig_features_amplitude(const double feature[DIG_FEATURES], const bool mask[
     amplitude[DIG_CHANNEL_FX_N]  = fmax(force, least_amplitude);
     amplitude[DIG_CHANNEL_FZ_N]  = fmax(force, least_amplitude);
 }
+
+// e^(-|x|), integrated four times from its middle on.
+static double integrated(const double x)
+{
+    return pow(fabs(x), 3.0) / 6.0 + fabs(x) + exp(-fabs(x));
+}
+
+// Means over so wide a stretch about two places so far apart, integrated twice over that.
+static double smoothed(const double apart, const double width)
+{
+    return (integrated(apart + width) - 2.0 * integrated(apart) + integrated(apart - width)) /
+           (width * width);
+}
+
+void dig_features_lasting(const double edge_s[DIG_FEATURE_BINS + 1], const double half_s,
+                          const double memory_s,
+                          double       covariance[DIG_FEATURE_BINS * DIG_FEATURE_BINS])
+{
+    assert(half_s > 0.0 && memory_s > 0.0);
+    const double width = 2.0 * half_s / memory_s;
+    for (size_t i = 0; i < DIG_FEATURE_BINS; i++) {
+        for (size_t j = 0; j < DIG_FEATURE_BINS; j++) {
+            const double a[2] = { edge_s[i] / memory_s, edge_s[i + 1] / memory_s };
+            const double b[2] = { edge_s[j] / memory_s, edge_s[j + 1] / memory_s };
+            covariance[i * DIG_FEATURE_BINS + j] =
+                (smoothed(a[1] - b[0], width) + smoothed(a[0] - b[1], width) -
+                 smoothed(a[1] - b[1], width) - smoothed(a[0] - b[0], width)) /
+                ((a[1] - a[0]) * (b[1] - b[0]));
+        }
+    }
+}

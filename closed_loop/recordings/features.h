@@ -32,4 +32,10 @@ void dig_features_mask(const bool measured[DIG_FORCE_CHANNELS], double first, do
 void dig_features_amplitude(const double feature[DIG_FEATURES], const bool mask[DIG_FEATURES],
                             double amplitude[DIG_FORCE_CHANNELS]);
 
+/// How noise of a variance of 1 that becomes e times less alike in memory_s goes into the features
+/// of a channel: their covariance. Bin b lies between edge_s[b] and edge_s[b + 1], smoothed over
+/// +-half_s.
+void dig_features_lasting(const double edge_s[DIG_FEATURE_BINS + 1], double half_s, double memory_s,
+                          double covariance[DIG_FEATURE_BINS * DIG_FEATURE_BINS]);
+
 #endif // DIG_CLOSED_LOOP_RECORDINGS_FEATURES_H

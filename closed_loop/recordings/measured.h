@@ -23,6 +23,13 @@ struct dig_added {
     double noise; // as it was dug in few beds, in variances of one dig
 };
 
+// What sensors are off by that lasts: 1 sigma of it, and the time of the table's dig in which it
+// becomes e times less alike. Zeros: nothing.
+struct dig_lasting {
+    double sigma[DIG_FORCE_CHANNELS];
+    double memory_s;
+};
+
 struct dig_measured {
     char         name[64]; // the recording, for people
     size_t       order;    // place in the campaign, 0 …: digs follow each other in this order
@@ -43,6 +50,7 @@ struct dig_measured {
     bool   measured[DIG_CHANNELS];                // which of the channels there are
     double value[DIG_CHANNELS][DIG_CURVE_POINTS]; // by the model as it was; 0 where not measured
     double sigma[DIG_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of the sensors, after smoothing
+    struct dig_lasting lasting;                   // verdict/trace_noise.c tells it
     // What effects of the machine that were found add to value: 0 until any is.
     double machine[DIG_CHANNELS][DIG_CURVE_POINTS];
 

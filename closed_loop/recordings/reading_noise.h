@@ -1,5 +1,5 @@
 // What sensors scatter by, told by what they read. Noise that moves more slowly than the readings
-// come is not seen.
+// come is not seen here: verdict/trace_noise.c.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_READING_NOISE_H
 #define DIG_CLOSED_LOOP_RECORDINGS_READING_NOISE_H

@@ -1,5 +1,6 @@
 #include "closed_loop/search/null_simulation.h"
 
+#include "closed_loop/numeric/dense.h"
 #include "core/chance.h"
 
 #include <assert.h>
@@ -103,6 +104,24 @@ static double draw_size(const struct dig_whitened_digs *const batch, const size_
     return pow(fmax(1.0 - part + sqrt(part) * dig_chance_normal(seed), least), -1.5);
 }
 
+// Adds what lasts of the sensors' noise, if any does.
+static void add_lasting(const struct dig_whitened_digs_group *const group, uint64_t *const seed,
+                        double feature[DIG_FEATURES])
+{
+    double lower[DIG_FEATURE_BINS * DIG_FEATURE_BINS];
+    memcpy(lower, group->lasting, sizeof lower);
+    if (dig_cholesky(DIG_FEATURE_BINS, lower) != DIG_OK) {
+        return;
+    }
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        const size_t j = f % DIG_FEATURE_BINS;
+        const double z = group->lasting_sigma[f / DIG_FEATURE_BINS] * dig_chance_normal(seed);
+        for (size_t i = j; i < DIG_FEATURE_BINS; i++) {
+            feature[f + i - j] += lower[i * DIG_FEATURE_BINS + j] * z;
+        }
+    }
+}
+
 // One dig's scatter, whitened: a residual of the table and the sensors', or normal numbers.
 static void draw_scatter(const struct dig_whitened_digs *const batch, const size_t g,
                          uint64_t *const seed, double y[DIG_FEATURES])
@@ -125,6 +144,7 @@ static void draw_scatter(const struct dig_whitened_digs *const batch, const size
         feature[f] = sign * residual[f] * group->amplitude[f / DIG_FEATURE_BINS] +
                      group->sensor[f] * dig_chance_normal(&of_sensors);
     }
+    add_lasting(group, &of_sensors, feature);
     dig_whitened_digs_whiten(group, feature, y);
 }
 

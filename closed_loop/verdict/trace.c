@@ -265,6 +265,9 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     if (status == DIG_OK) {
         status = dig_trace_batch(w, &w->before, error);
     }
+    if (status == DIG_OK && w->machine == NULL) {
+        status = dig_trace_tell_noise(w, &w->before);
+    }
     if (status != DIG_OK) {
         return status;
     }

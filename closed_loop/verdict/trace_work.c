@@ -123,7 +123,7 @@ static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
     return status;
 }
 
-static enum dig_status make_batch(const struct dig_trace_work *const w, const double place[])
+enum dig_status dig_trace_whiten(const struct dig_trace_work *const w, const double place[])
 {
     return dig_whitened_digs_make(w->soil, w->scatter, w->digs, w->measured, w->fit, place,
                                   w->batch);
@@ -138,7 +138,7 @@ static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *c
 
 // Of digs that are whitened otherwise, too, in units of the table. What was taken off was dug in
 // few beds: so much is to be expected of it in the digs about their means.
-static double misfit_of(const struct dig_trace_work *const w, const struct dig_fitted *const plain)
+double dig_trace_misfit(const struct dig_trace_work *const w, const struct dig_fitted *const plain)
 {
     double misfit = plain->misfit;
     for (size_t i = 0; i < w->batch->digs; i++) {
@@ -174,21 +174,21 @@ static enum dig_status open_depths(const struct dig_trace_work *const w, const d
     double              least    = INFINITY;
     enum dig_status     status   = DIG_OK;
     if (!set_share(w, best) || !dig_approach_varies_any(w->set)) {
-        return make_batch(w, place);
+        return dig_trace_whiten(w, place);
     }
     for (size_t i = 0; i < sizeof shares / sizeof shares[0] && status == DIG_OK; i++) {
         struct dig_fitted plain;
         (void)set_share(w, shares[i]);
-        status = make_batch(w, place);
+        status = dig_trace_whiten(w, place);
         if (status == DIG_OK) {
             fit_plain(w, &plain);
-            const double misfit = misfit_of(w, &plain);
+            const double misfit = dig_trace_misfit(w, &plain);
             best                = misfit < least ? shares[i] : best;
             least               = fmin(misfit, least);
         }
     }
     (void)set_share(w, best);
-    return status == DIG_OK ? make_batch(w, place) : status;
+    return status == DIG_OK ? dig_trace_whiten(w, place) : status;
 }
 
 // What an approach adds depends on the gravel, and the gravel on what is taken off: begins with one
@@ -200,11 +200,11 @@ static enum dig_status settle(const struct dig_trace_work *const w, const enum w
     for (size_t i = 0; i < w->digs; i++) {
         put_back(&w->measured[i]);
     }
-    enum dig_status status = make_batch(w, NULL);
+    enum dig_status status = dig_trace_whiten(w, NULL);
     for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
         fit_plain(w, plain);
         status = take_off_approaches(w, plain->number, round == 0 ? begin : LIKER);
-        status = status == DIG_OK ? make_batch(w, plain->number) : status;
+        status = status == DIG_OK ? dig_trace_whiten(w, plain->number) : status;
     }
     if (status == DIG_OK) {
         fit_plain(w, plain);
@@ -224,7 +224,7 @@ static enum dig_status settle_best(const struct dig_trace_work *const w,
     }
     (void)set_share(w, deep ? LEAST_SHARE : 1.0);
     if (!any) {
-        const enum dig_status status = make_batch(w, NULL);
+        const enum dig_status status = dig_trace_whiten(w, NULL);
         if (status == DIG_OK) {
             fit_plain(w, plain);
         }
@@ -232,9 +232,9 @@ static enum dig_status settle_best(const struct dig_trace_work *const w,
     }
     enum dig_status status = settle(w, MADE, plain);
     if (deep && status == DIG_OK) {
-        const double made = misfit_of(w, plain);
+        const double made = dig_trace_misfit(w, plain);
         status            = settle(w, LEVEL, plain);
-        if (status == DIG_OK && made < misfit_of(w, plain)) {
+        if (status == DIG_OK && made < dig_trace_misfit(w, plain)) {
             status = settle(w, MADE, plain);
         }
     }

@@ -73,6 +73,19 @@ DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_trace_work *w, struc
 DIG_MUST_CHECK enum dig_status dig_trace_settle_machine(struct dig_trace_work *w,
                                                         const double           covariance[]);
 
+/// Whitens the digs to fit to, about the gravel at place (NULL: not known yet), into the batch.
+DIG_MUST_CHECK enum dig_status dig_trace_whiten(const struct dig_trace_work *w,
+                                                const double                 place[]);
+
+/// -2 log likelihood of a fit of the batch, in units of the table: to compare it with one of a
+/// batch whitened otherwise.
+double dig_trace_misfit(const struct dig_trace_work *w, const struct dig_fitted *fitted);
+
+/// Leaves in measured[].lasting the noise along a bin that makes the digs likeliest, and the batch
+/// whitened and *plain fitted with it; where that is none, both as they were. Some 300 ms.
+DIG_MUST_CHECK enum dig_status dig_trace_tell_noise(const struct dig_trace_work *w,
+                                                    struct dig_fitted           *plain);
+
 /// Leaves in confirmed whether what the search chose may change the prediction: always where free
 /// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
 /// better.

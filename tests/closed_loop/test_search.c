@@ -74,8 +74,8 @@ TEST(nothing_is_found_where_nothing_is)
     assert_true(alarms <= 1);
 }
 
-// What is drawn of digs whose sensors are loud scatters as they do, by one.
-TEST(digs_are_drawn_with_the_noise_of_their_sensors)
+// What is drawn of digs whose sensors are loud, for a row or for long, scatters as they do, by one.
+static void draw_with_noise(const double share, const double memory_s)
 {
     enum { MANY = 40 };
     const struct dig_gravel         gravel = { { 0.6, 0.55, 2500 } };
@@ -85,7 +85,7 @@ TEST(digs_are_drawn_with_the_noise_of_their_sensors)
     uint64_t                        seed = 5;
     dig_in_turn(MANY, &gravel, 0, NULL, NULL, &seed, loud);
     for (size_t i = 0; i < MANY; i++) {
-        dig_add_noise(3.0, &seed, &loud[i]);
+        dig_add_noise(share, memory_s, &seed, &loud[i]);
     }
     batch_digs(MANY, loud, &gravel, drawn);
     drawn[1]                       = drawn[0];
@@ -96,6 +96,12 @@ TEST(digs_are_drawn_with_the_noise_of_their_sensors)
         const double freedom = (double)(drawn->group[g].features * (drawn->group[g].digs - 1));
         assert_close(drawn[1].group[g].about / freedom, 1.0, 5.0 * sqrt(2.0 / freedom) + 0.05);
     }
+}
+
+TEST(digs_are_drawn_with_the_noise_of_their_sensors)
+{
+    draw_with_noise(3.0, 0.0);
+    draw_with_noise(0.5, 0.1);
 }
 
 TEST(an_effect_is_named_and_measured)

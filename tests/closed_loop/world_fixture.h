@@ -44,34 +44,40 @@ static inline void dig_in_turn(const size_t digs, const struct dig_gravel *const
     }
 }
 
-// Adds white noise to a dig's rows, 5 ms apart, so much of each channel's rms, before the
-// smoothing.
-static inline void dig_add_noise(const double share, uint64_t *const seed,
+// Adds noise to a dig's rows, 5 ms apart, so much of each channel's rms, before the smoothing, that
+// lasts so long (0: white).
+static inline void dig_add_noise(const double share, const double memory_s, uint64_t *const seed,
                                  struct dig_measured *const dig)
 {
     enum { ROWS_MAX = 4096 };
     static double                      t_s[ROWS_MAX], noise[ROWS_MAX], smooth[ROWS_MAX];
     const struct dig_trajectory *const t = &world.set->trajectory[dig->trajectory];
 
-    const double half_s = world.set->smooth_half_s;
-    const size_t rows   = (size_t)(dig_trajectory_duration_s(t) / 0.005) + 1;
+    const double half_s   = world.set->smooth_half_s;
+    const double kept     = memory_s > 0.0 ? exp(-0.005 / memory_s) : 0.0;
+    const size_t rows     = (size_t)(dig_trajectory_duration_s(t) / 0.005) + 1;
+    dig->lasting.memory_s = memory_s;
     assert_true(rows <= ROWS_MAX);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         double square = 0.0;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             square += dig->value[c][k] * dig->value[c][k] / DIG_CURVE_POINTS;
         }
+        double off = dig_chance_normal(seed);
         for (size_t i = 0; i < rows; i++) {
             t_s[i]   = 0.005 * (double)i;
-            noise[i] = share * sqrt(square) * dig_chance_normal(seed);
+            noise[i] = share * sqrt(square) * off;
+            off      = kept * off + sqrt(1.0 - kept * kept) * dig_chance_normal(seed);
         }
+        dig->lasting.sigma[c] = memory_s > 0.0 ? share * sqrt(square) : 0.0;
         dig_curve_smooth(rows, t_s, noise, half_s, smooth);
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             const double at_s =
                 dig_trajectory_time_s(t, world.set->tooth_m, (double)k / (DIG_CURVE_POINTS - 1));
             const size_t row = (size_t)fmin(at_s / 0.005, (double)rows - 1.0);
             dig->value[c][k] += smooth[row];
-            dig->sigma[c][k] = share * sqrt(square) * sqrt(0.005 / (2.0 * half_s));
+            dig->sigma[c][k] =
+                memory_s > 0.0 ? 0.0 : share * sqrt(square) * sqrt(0.005 / (2.0 * half_s));
         }
     }
 }
