@@ -161,6 +161,7 @@ static struct dig_scatter *make_scatter(const struct dig_response_surface *const
                 r[i].entry      = e;
                 r[i].packings   = PACKINGS;
                 r[i].strength   = log(size[0] / gravel->value[DIG_AXIS_DENSITY_kgpm3]);
+                dig_response_surface_place(surface, gravel, r[i].place);
                 for (size_t f = 0; f < DIG_FEATURES; f++) {
                     r[i].value[f] = (r[i].value[f] - mean[f]) / size[f / DIG_FEATURE_BINS];
                 }

@@ -136,6 +136,22 @@ DIG_VECTORS static void fill_covariance(const struct dig_whitened_digs_group *co
     whiten_both(group, (const double(*)[DIG_FEATURES])k, covariance);
 }
 
+// What beds differ by as other gravels do.
+static void add_as_gravels(const struct dig_whitened_digs_group *const group,
+                           const struct dig_shifts *const shift, double covariance[])
+{
+    const size_t n = group->features;
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        double y[DIG_FEATURES];
+        dig_whitened_digs_whiten(group, shift->as_gravels[a], y);
+        for (size_t i = 0; i < n; i++) {
+            for (size_t j = 0; j <= i; j++) {
+                covariance[i * n + j] += y[i] * y[j];
+            }
+        }
+    }
+}
+
 void dig_common_error_build(const struct dig_whitened_digs_group *const group,
                             struct dig_common_error *const              error)
 {
@@ -149,6 +165,7 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
         covariance[i * n + i] += 1.0 / (double)group->digs + error->even;
     }
     error->noise = error->even + trace;
+    add_as_gravels(group, &error->shift, covariance);
     // Positive definite by what is on its diagonal.
     const enum dig_status status = dig_cholesky(n, covariance);
     assert(status == DIG_OK);
@@ -181,6 +198,15 @@ double dig_common_error_squares(const struct dig_whitened_digs_group *const grou
     return sum;
 }
 
+static void add_drawn(const double sigma[DIG_FEATURES], uint64_t *const seed,
+                      double feature[DIG_FEATURES])
+{
+    const double by = dig_chance_normal(seed);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        feature[f] += by * sigma[f];
+    }
+}
+
 void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
                            const struct dig_common_error *const error, uint64_t *const seed,
                            double y[DIG_FEATURES])
@@ -206,9 +232,11 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
         }
     }
     for (size_t s = 0; s < error->shift.shifts; s++) {
-        const double by = dig_chance_normal(seed);
-        for (size_t f = 0; f < DIG_FEATURES; f++) {
-            feature[f] += by * error->shift.of[s][f];
+        add_drawn(error->shift.of[s], seed, feature);
+    }
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        if (!is_none(error->shift.as_gravels[a])) {
+            add_drawn(error->shift.as_gravels[a], seed, feature);
         }
     }
     dig_whitened_digs_whiten(group, feature, y);

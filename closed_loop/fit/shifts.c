@@ -64,6 +64,26 @@ static struct dig_plain beside(const struct dig_soil *const soil, const size_t t
     return dig_plain_of(soil, trajectory, moved);
 }
 
+// What the beds of a group differ by as other gravels do; the first shifts are those gravels.
+static void put_as_gravels(const struct dig_whitened_digs *const batch, const size_t group,
+                           struct dig_shifts *const shifts)
+{
+    const struct dig_whitened_digs_group *const of = &batch->group[group];
+
+    const double mean = sqrt(1.0 / (double)of->digs + of->repeats);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            shifts->as_gravels[a][f] = shifts->of[a][f] / of->amplitude[f / DIG_FEATURE_BINS];
+        }
+    }
+    dig_scatter_as_gravels(batch->scatter, of->trajectory, shifts->as_gravels);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            shifts->as_gravels[a][f] *= mean * of->amplitude[f / DIG_FEATURE_BINS];
+        }
+    }
+}
+
 void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t group,
                      const struct dig_hypothesis *const hypothesis, const double number[],
                      const struct dig_plain *const plain, const double added[DIG_FEATURES],
@@ -81,6 +101,7 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
                                              place_of(batch->soil->surface->set, a), moved);
         put(near.feature, plain->feature, shifts);
     }
+    put_as_gravels(batch, group, shifts);
     for (size_t a = 0; templated && a < DIG_AXES; a++) {
         const struct dig_plain far =
             beside(batch->soil, trajectory, numbers, number, a, of_effect_place, moved);

@@ -13,6 +13,8 @@
 struct dig_shifts {
     size_t shifts;
     double of[DIG_SHIFTS_MAX][DIG_FEATURES]; // units of the table
+    // What the mean of so many beds differs by as other gravels do, beyond S.
+    double as_gravels[DIG_AXES][DIG_FEATURES];
 };
 
 /// The shifts of a group's mean dig, each of a trajectory's own. plain: at number; added: what the

@@ -1,5 +1,6 @@
 #include "closed_loop/model/scatter.h"
 
+#include "closed_loop/model/gravel_directions.h"
 #include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
@@ -175,13 +176,20 @@ static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_
     return DIG_OK;
 }
 
+// Variance of digs over that of one dig, in all directions and in those of other gravels.
+struct variance {
+    double all, as_gravels;
+};
+
 // Variance of the digs of folds [from, to), each over an S that its fold took no part in; of fold
 // FOLDS: of all digs over the S of all.
-static double variance_over(const struct dig_scatter *const scatter, const size_t t, const size_t n,
-                            const struct told told[], const size_t from, const size_t to)
+static struct variance variance_over(const struct dig_response_surface *const surface,
+                                     const struct dig_scatter *const scatter, const size_t t,
+                                     const size_t n, const struct told told[], const size_t from,
+                                     const size_t to)
 {
-    double sum     = 0.0;
-    double freedom = 0.0;
+    struct variance sum     = { 0.0, 0.0 };
+    double          freedom = 0.0;
     for (size_t fold = from; fold < to; fold++) {
         double s[DIG_FEATURES][DIG_FEATURES];
         if (pool(scatter, t, n, told, fold, s) < 1.0 || decompose(s) != DIG_OK) {
@@ -189,13 +197,19 @@ static double variance_over(const struct dig_scatter *const scatter, const size_
         }
         for (size_t i = 0; i < n; i++) {
             if (told[i].fold == fold || fold == FOLDS) {
-                sum += told[i].freedom * size_of((const double(*)[DIG_FEATURES])s, &told[i]) /
-                       dig_scatter_factor(scatter, t, told[i].of->strength);
+                const double(*const lower)[DIG_FEATURES] = (const double(*)[DIG_FEATURES])s;
+                const double weight =
+                    told[i].freedom / dig_scatter_factor(scatter, t, told[i].of->strength);
+                sum.all += weight * size_of(lower, &told[i]);
+                sum.as_gravels += weight / told[i].freedom *
+                                  dig_gravel_directions_variance(surface, t, told[i].of->place,
+                                                                 lower, told[i].of->value);
                 freedom += told[i].freedom;
             }
         }
     }
-    return freedom > 0.0 ? sum / freedom : 1.0;
+    return freedom > 0.0 ? (struct variance){ sum.all / freedom, sum.as_gravels / freedom }
+                         : (struct variance){ 1.0, 1.0 };
 }
 
 // A residual is smaller against an S it took part in than a campaign's dig is: larger makes it one.
@@ -219,7 +233,8 @@ static enum dig_status keep_residuals(struct dig_scatter *const scatter, const s
     return DIG_OK;
 }
 
-static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const size_t t,
+static enum dig_status pool_trajectory(const struct dig_response_surface *const surface,
+                                       struct dig_scatter *const scatter, const size_t t,
                                        const size_t n, const struct told told[])
 {
     enum dig_status status = fit_factor(scatter, t, n, told);
@@ -227,16 +242,24 @@ static enum dig_status pool_trajectory(struct dig_scatter *const scatter, const 
         return status;
     }
     (void)pool(scatter, t, n, told, FOLDS, scatter->covariance[t]);
-    const double held_out   = variance_over(scatter, t, n, told, 0, FOLDS);
-    const double taken_part = variance_over(scatter, t, n, told, FOLDS, FOLDS + 1);
-    scatter->widened[t]     = fmax(held_out, 1.0);
+    const struct variance held_out = variance_over(surface, scatter, t, n, told, 0, FOLDS);
+    const struct variance taken_part =
+        variance_over(surface, scatter, t, n, told, FOLDS, FOLDS + 1);
+    scatter->widened[t]    = fmax(held_out.all, 1.0);
+    scatter->as_gravels[t] = fmax(held_out.as_gravels / scatter->widened[t] - 1.0, 0.0);
     for (size_t i = 0; i < DIG_FEATURES; i++) {
         for (size_t j = 0; j < DIG_FEATURES; j++) {
             scatter->covariance[t][i][j] *= scatter->widened[t];
         }
     }
     add_floor(scatter->covariance[t]);
-    return keep_residuals(scatter, t, n, told, fmax(held_out / fmax(taken_part, 1e-3), 1.0));
+    memcpy(scatter->lower[t], scatter->covariance[t], sizeof scatter->lower[t]);
+    status = dig_cholesky(DIG_FEATURES, &scatter->lower[t][0][0]);
+    if (status != DIG_OK) {
+        return status;
+    }
+    return keep_residuals(scatter, t, n, told,
+                          fmax(held_out.all / fmax(taken_part.all, 1e-3), 1.0));
 }
 
 // Variances of the table's curves, the mean of all entries.
@@ -315,8 +338,9 @@ static void assume(const struct dig_response_surface *const surface, const size_
             memcpy(scatter->covariance[t], s, sizeof s);
         }
     }
-    scatter->slope[t]   = 0.0;
-    scatter->widened[t] = 1.0;
+    scatter->slope[t]      = 0.0;
+    scatter->widened[t]    = 1.0;
+    scatter->as_gravels[t] = 0.0;
 }
 
 enum dig_status dig_scatter_pool(const struct dig_response_surface *const surface,
@@ -336,7 +360,8 @@ enum dig_status dig_scatter_pool(const struct dig_response_surface *const surfac
         for (size_t i = 0; i < n; i++) {
             made->freedom[t] += told[i].freedom;
         }
-        status = made->freedom[t] >= LEAST_FREEDOM ? pool_trajectory(made, t, n, told) : DIG_EINVAL;
+        status = made->freedom[t] >= LEAST_FREEDOM ? pool_trajectory(surface, made, t, n, told)
+                                                   : DIG_EINVAL;
         if (status == DIG_EINVAL) {
             assume(surface, t, n, told, made);
         }
@@ -348,6 +373,25 @@ enum dig_status dig_scatter_pool(const struct dig_response_surface *const surfac
     }
     *scatter = made;
     return DIG_OK;
+}
+
+void dig_scatter_as_gravels(const struct dig_scatter *const scatter, const size_t trajectory,
+                            double of[DIG_AXES][DIG_FEATURES])
+{
+    assert(scatter != NULL && of != NULL);
+    const double(*const lower)[DIG_FEATURES] = scatter->lower[trajectory];
+    const double sigma                       = sqrt(scatter->as_gravels[trajectory]);
+    if (!(sigma > 0.0)) {
+        memset(of, 0, DIG_AXES * sizeof of[0]);
+        return;
+    }
+    dig_gravel_directions_whiten(lower, of);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        dig_lower_multiply(DIG_FEATURES, &lower[0][0], of[a]);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            of[a][f] *= sigma;
+        }
+    }
 }
 
 void dig_scatter_destroy(struct dig_scatter *const scatter)

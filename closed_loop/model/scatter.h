@@ -8,6 +8,10 @@
 // S is pooled over all packings of all entries, drawn a little towards correlations that depend on
 // the distance along the dig alone, widened by what digs that took no part in it exceed it, and
 // given a floor of DIG_SCATTER_FLOOR of the amplitude: no DEM knows the curves better than that.
+//
+// A bed differs from the next most of all as another gravel would, which changes a dig otherwise at
+// each gravel, so that S, which is pooled, has too little of it: what left-out digs exceed S by in
+// these directions is measured, and added to S there.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_SCATTER_H
 #define DIG_CLOSED_LOOP_MODEL_SCATTER_H
@@ -22,7 +26,10 @@ struct dig_scatter {
     // it.
     double freedom[DIG_TRAJECTORY_MAX];
     double covariance[DIG_TRAJECTORY_MAX][DIG_FEATURES][DIG_FEATURES]; // S
-    double widened[DIG_TRAJECTORY_MAX];  // variance of digs that took no part, over S
+    double widened[DIG_TRAJECTORY_MAX]; // variance of digs that took no part, over S
+    // The same in the directions of other gravels, beyond that; and L of the S that it is beyond.
+    double as_gravels[DIG_TRAJECTORY_MAX];
+    double lower[DIG_TRAJECTORY_MAX][DIG_FEATURES][DIG_FEATURES];
     double strength[DIG_TRAJECTORY_MAX]; // at which the factor is 1
     double slope[DIG_TRAJECTORY_MAX];    // of the factor over strength
     // What S was pooled from, as large as digs at factor 1 that took no part in S.
@@ -44,6 +51,7 @@ DIG_MUST_CHECK enum dig_status dig_scatter_measure(const char                   
 struct dig_scatter_residual {
     size_t trajectory, entry, packings;
     double strength;
+    double place[DIG_AXES]; // of the entry's gravel
     double value[DIG_FEATURES];
 };
 DIG_MUST_CHECK enum dig_status dig_scatter_pool(const struct dig_response_surface *surface,
@@ -56,5 +64,11 @@ void dig_scatter_destroy(struct dig_scatter *scatter);
 
 /// The factor at a strength, held within 0.4 … 2.5.
 double dig_scatter_factor(const struct dig_scatter *scatter, size_t trajectory, double strength);
+
+/// What digs of a gravel differ by as gravels do, beyond S: 1 sigma of it in each of as many
+/// directions, relative to amplitude. of: what each axis changes of the gravel's dig, by any step,
+/// relative to amplitude; the sigmas take its place.
+void dig_scatter_as_gravels(const struct dig_scatter *scatter, size_t trajectory,
+                            double of[DIG_AXES][DIG_FEATURES]);
 
 #endif // DIG_CLOSED_LOOP_MODEL_SCATTER_H

@@ -57,6 +57,7 @@ static enum dig_status finish_entry(struct gathering *const g)
         r->trajectory                        = g->origin.trajectory;
         r->entry                             = g->entries;
         r->packings                          = g->packings;
+        dig_response_surface_place(g->surface, &g->origin.gravel, r->place);
         r->strength =
             log(amplitude[DIG_CHANNEL_MY_Nm] / g->origin.gravel.value[DIG_AXIS_DENSITY_kgpm3]);
         for (size_t f = 0; f < DIG_FEATURES; f++) {

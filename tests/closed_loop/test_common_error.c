@@ -34,6 +34,8 @@ static struct dig_common_error some_error(const struct dig_whitened_digs_group *
         error.size[0][f]       = 0.1 * amplitude * cos(0.3 * (double)f);
         error.size[1][f]       = f % DIG_FEATURE_BINS > 5 ? 0.2 * amplitude : 0.0;
         error.shift.of[1][f]   = 0.1 * amplitude * sin(0.5 * (double)f);
+
+        error.shift.as_gravels[2][f] = 0.1 * amplitude * cos(0.7 * (double)f);
     }
     dig_common_error_build(group, &error);
     return error;
@@ -98,6 +100,22 @@ TEST(a_shift_is_as_uncertain_as_it_says)
     assert_close(dig_common_error_squares(group, &error, y), 9.0, 1e-2);
 }
 
+// Beds that differ as gravels do make the gravel less certain, and nothing else: a fit of the
+// gravel leaves nothing of it.
+TEST(what_beds_differ_by_as_gravels_is_no_noise)
+{
+    const struct dig_whitened_digs_group *const group = make_group();
+    struct dig_common_error                     error = { .even = 0.1 };
+    double                                      y[DIG_FEATURES];
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        error.shift.as_gravels[0][f] = group->amplitude[f / DIG_FEATURE_BINS];
+    }
+    dig_common_error_build(group, &error);
+    dig_whitened_digs_whiten(group, error.shift.as_gravels[0], y);
+    assert_true(dig_common_error_squares(group, &error, y) < 1.0);
+    assert_close(error.noise, 0.1, 1e-12);
+}
+
 // What the two parts and the shift of some_error() have between two features, units of the table.
 static double between(const struct dig_common_error *const error, const size_t a, const size_t b)
 {
@@ -106,7 +124,8 @@ static double between(const struct dig_common_error *const error, const size_t a
                          exp(-0.5 * apart * apart / (2.5 * 2.5));
     return (error->size[0][a] * error->size[0][b] + error->size[1][a] * error->size[1][b]) *
                (alike + (a == b ? 1e-6 : 0.0)) +
-           error->shift.of[1][a] * error->shift.of[1][b];
+           error->shift.of[1][a] * error->shift.of[1][b] +
+           error->shift.as_gravels[2][a] * error->shift.as_gravels[2][b];
 }
 
 // Digs that lack bins at their ends have the covariance of those that they have: C x over C is

@@ -1,10 +1,13 @@
 #include "closed_loop/model/scatter.h"
 
+#include "core/chance.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { ENTRIES = 80, PACKINGS = 4 };
 
@@ -83,6 +86,71 @@ TEST(stronger_gravels_may_scatter_more)
     assert_close(dig_scatter_factor(s, 0, -1.0) / dig_scatter_factor(s, 0, 0.0), 0.45, 0.15);
     assert_true(dig_scatter_factor(s, 0, -100.0) >= 0.4); // never none
     dig_scatter_destroy(s);
+}
+
+// The beds of one entry, each of its gravel moved by so much along each axis, besides an even
+// scatter, about their mean.
+static void move_beds(const struct dig_response_surface *const surface, const double moved,
+                      uint64_t *const seed, struct dig_scatter_residual r[PACKINGS])
+{
+    double mean[DIG_FEATURES] = { 0.0 };
+    for (size_t p = 0; p < PACKINGS; p++) {
+        double amplitude[DIG_FORCE_CHANNELS];
+        double at[DIG_AXES];
+        for (size_t a = 0; a < DIG_AXES; a++) {
+            at[a] = r[p].place[a] + moved * model_normal(seed);
+        }
+        dig_response_surface_features(surface, 0, r[p].place, r[p].value, amplitude);
+        dig_response_surface_features(surface, 0, at, r[p].value,
+                                      (double[DIG_FORCE_CHANNELS]){ 0 });
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            r[p].value[f] =
+                r[p].value[f] / amplitude[f / DIG_FEATURE_BINS] + 0.02 * model_normal(seed);
+            mean[f] += r[p].value[f] / PACKINGS;
+        }
+    }
+    for (size_t p = 0; p < PACKINGS; p++) {
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            r[p].value[f] -= mean[f];
+        }
+    }
+}
+
+// How much more than S digs scatter as other gravels do, of gravels that lie all over the table.
+static double more_as_gravels(const double moved)
+{
+    static struct dig_scatter_residual r[ENTRIES][PACKINGS];
+    struct dig_curve_set              *set;
+    struct dig_response_surface       *surface = make_surface(&set);
+    struct dig_scatter                *s       = NULL;
+    uint64_t                           seed    = 12;
+    for (size_t e = 0; e < ENTRIES; e++) {
+        const struct dig_scatter_residual entry = {
+            .entry    = e,
+            .packings = PACKINGS,
+            .place = { 1.8 * dig_chance_uniform(&seed) - 0.9, 1.8 * dig_chance_uniform(&seed) - 0.9,
+                       1.8 * dig_chance_uniform(&seed) - 0.9 }
+        };
+        for (size_t p = 0; p < PACKINGS; p++) {
+            r[e][p] = entry;
+        }
+        move_beds(surface, moved, &seed, r[e]);
+    }
+    assert_int_equal(dig_scatter_pool(surface, (size_t)ENTRIES * PACKINGS, r[0], &s), DIG_OK);
+    const double more = s->as_gravels[0];
+    dig_scatter_destroy(s);
+    free(surface);
+    made_table_destroy(set);
+    return more;
+}
+
+TEST(beds_that_differ_as_gravels_do_scatter_more_there)
+{
+    const double none = more_as_gravels(0.0);
+    const double some = more_as_gravels(0.1);
+    print_message("more than S as gravels: %.2f and %.2f\n", none, some);
+    assert_true(none < 0.15);
+    assert_true(some > 0.3);
 }
 
 // Without second packings the curves' own standard deviation is all there is.

@@ -79,6 +79,41 @@ TEST(a_table_of_fewer_values_is_off_by_more)
     assert_close(more[DIG_AXIS_DENSITY_kgpm3], 1.0, 1e-12);
 }
 
+// Squares of what beds differ by as other gravels do, over one dig's scatter.
+static double squares_of_beds(const struct dig_scatter *const scatter, const size_t digs)
+{
+    const struct dig_hypothesis plain                          = { .effects = 0 };
+    double                      number[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_shifts           shifts;
+    double                      y[DIG_FEATURES];
+    double                      sum = 0.0;
+    make_batch(number);
+    batch.scatter       = scatter;
+    batch.group[0].digs = digs;
+    fill(&plain, number, &shifts);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        dig_whitened_digs_whiten(&batch.group[0], shifts.as_gravels[a], y);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            sum += y[f] * y[f];
+        }
+    }
+    return sum;
+}
+
+// As much in each of three directions as the scatter says, less the more beds there are.
+TEST(beds_differ_as_gravels_do)
+{
+    static struct dig_scatter scatter;
+    make_batch((double[DIG_AXES]){ 0.0 });
+    const size_t t        = batch.group[0].trajectory;
+    scatter               = *world.scatter;
+    scatter.as_gravels[t] = 0.8;
+    assert_close(squares_of_beds(&scatter, 1), DIG_AXES * 0.8, 1e-6);
+    assert_close(squares_of_beds(&scatter, 4), DIG_AXES * 0.8 / 4.0, 1e-6);
+    scatter.as_gravels[t] = 0.0;
+    assert_close(squares_of_beds(&scatter, 1), 0.0, 0.0);
+}
+
 TEST(an_effect_is_off_by_what_it_adds)
 {
     const struct dig_hypothesis slope = { .effects = 1, .effect = { DIG_EFFECT_GROUND_SLOPE } };
