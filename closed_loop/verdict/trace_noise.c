@@ -107,7 +107,6 @@ enum dig_status dig_trace_tell_noise(const struct dig_trace_work *const w,
     if (status == DIG_OK && told.memory_s > 0.0) {
         static const double middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
         dig_hypothesis_fit(w->batch, &none, middle, DIG_FIT_THOROUGH, plain);
-        dig_hypothesis_tell_approaches(w->batch, plain);
     } else if (status == DIG_OK) {
         *w->batch = without;
     }

@@ -90,8 +90,8 @@ TEST(stronger_gravels_may_scatter_more)
 
 // The beds of one entry, each of its gravel moved by so much along each axis, besides an even
 // scatter, about their mean.
-static void move_beds(const struct dig_response_surface *const surface, const double moved,
-                      uint64_t *const seed, struct dig_scatter_residual r[PACKINGS])
+static void move_beds(const double moved, uint64_t *const seed,
+                      struct dig_scatter_residual r[PACKINGS])
 {
     double mean[DIG_FEATURES] = { 0.0 };
     for (size_t p = 0; p < PACKINGS; p++) {
@@ -100,8 +100,8 @@ static void move_beds(const struct dig_response_surface *const surface, const do
         for (size_t a = 0; a < DIG_AXES; a++) {
             at[a] = r[p].place[a] + moved * model_normal(seed);
         }
-        dig_response_surface_features(surface, 0, r[p].place, r[p].value, amplitude);
-        dig_response_surface_features(surface, 0, at, r[p].value,
+        dig_response_surface_features(&surface, 0, r[p].place, r[p].value, amplitude);
+        dig_response_surface_features(&surface, 0, at, r[p].value,
                                       (double[DIG_FORCE_CHANNELS]){ 0 });
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             r[p].value[f] =
@@ -120,10 +120,8 @@ static void move_beds(const struct dig_response_surface *const surface, const do
 static double more_as_gravels(const double moved)
 {
     static struct dig_scatter_residual r[ENTRIES][PACKINGS];
-    struct dig_curve_set              *set;
-    struct dig_response_surface       *surface = make_surface(&set);
-    struct dig_scatter                *s       = NULL;
-    uint64_t                           seed    = 12;
+    struct dig_scatter                *s    = NULL;
+    uint64_t                           seed = 12;
     for (size_t e = 0; e < ENTRIES; e++) {
         const struct dig_scatter_residual entry = {
             .entry    = e,
@@ -134,13 +132,11 @@ static double more_as_gravels(const double moved)
         for (size_t p = 0; p < PACKINGS; p++) {
             r[e][p] = entry;
         }
-        move_beds(surface, moved, &seed, r[e]);
+        move_beds(moved, &seed, r[e]);
     }
-    assert_int_equal(dig_scatter_pool(surface, (size_t)ENTRIES * PACKINGS, r[0], &s), DIG_OK);
+    assert_int_equal(dig_scatter_pool(&surface, (size_t)ENTRIES * PACKINGS, r[0], &s), DIG_OK);
     const double more = s->as_gravels[0];
     dig_scatter_destroy(s);
-    free(surface);
-    made_table_destroy(set);
     return more;
 }
 

@@ -57,22 +57,19 @@ TEST(digs_with_noise_scatter_by_no_more_than_one)
 // Noise that lasts is counted on as it is, how alike two bins are with it.
 TEST(digs_with_noise_that_lasts_scatter_by_one)
 {
-    struct dig_measured      *measured = calloc(DIGS, sizeof *measured);
-    struct dig_whitened_digs *batch    = batch_of(measured);
-    uint64_t                  seed     = 10;
+    make_batch();
+    uint64_t seed = 10;
     for (size_t i = 0; i < DIGS; i++) {
         dig_add_noise(0.5, 0.1, &seed, &measured[i]);
     }
-    batch_digs(DIGS, measured, &gravel, batch);
-    for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &batch->group[g];
+    batch_digs(DIGS, measured, &gravel, &batch);
+    for (size_t g = 0; g < batch.groups; g++) {
+        const struct dig_whitened_digs_group *const group = &batch.group[g];
         const double freedom = (double)(group->features * (group->digs - 1));
         print_message("%s: %.2f\n", world.set->trajectory[group->trajectory].name,
                       group->about / freedom);
         assert_close(group->about / freedom, 1.0, 5.0 * sqrt(2.0 / freedom) + 0.05);
     }
-    free(batch);
-    free(measured);
 }
 
 TEST(what_the_machine_adds_is_taken_off)
