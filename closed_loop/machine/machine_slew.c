@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // So many blocks make a second; it sets in and dies away within so many more, which go with them.
@@ -146,4 +147,34 @@ bool dig_slew_leave_out(struct dig_lines *const lines, const double at[])
     }
     take_out(air, out);
     return true;
+}
+
+enum dig_status dig_slew_rows_save(const struct dig_air *const air,
+                                   struct dig_slew_rows *const rows)
+{
+    assert(air != NULL && rows != NULL);
+    struct dig_air_row *const row = malloc((air->rows + 1) * sizeof *row);
+    if (row == NULL) {
+        return DIG_ENOMEM;
+    }
+    memcpy(row, air->row, air->rows * sizeof *row);
+    rows->row  = row;
+    rows->rows = air->rows;
+    for (size_t s = 0; s < air->segments; s++) {
+        rows->of[s] = air->segment[s].rows;
+    }
+    return DIG_OK;
+}
+
+void dig_slew_rows_restore(const struct dig_slew_rows *const rows, struct dig_air *const air)
+{
+    assert(rows != NULL && air != NULL);
+    size_t first = 0;
+    memcpy(air->row, rows->row, rows->rows * sizeof *rows->row);
+    for (size_t s = 0; s < air->segments; s++) {
+        air->segment[s].first_row = first;
+        air->segment[s].rows      = rows->of[s];
+        first += rows->of[s];
+    }
+    air->rows = first;
 }

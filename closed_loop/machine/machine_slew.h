@@ -6,6 +6,7 @@
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SLEW_H
 
 #include "closed_loop/machine/machine_lines.h"
+#include "core/status.h"
 
 #include <stdbool.h>
 
@@ -14,5 +15,17 @@
 /// went; what is left is then to be explained anew. Of air that is mostly slewing nothing is taken
 /// out.
 bool dig_slew_leave_out(struct dig_lines *lines, const double at[]);
+
+/// The rows that air has, to go back to. Free row.
+struct dig_slew_rows {
+    struct dig_air_row *row;
+    size_t              rows;
+    size_t              of[DIG_LINES_SEGMENTS_MAX]; // how many each segment has
+};
+
+DIG_MUST_CHECK enum dig_status dig_slew_rows_save(const struct dig_air *air,
+                                                  struct dig_slew_rows *rows);
+
+void dig_slew_rows_restore(const struct dig_slew_rows *rows, struct dig_air *air);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SLEW_H

@@ -11,6 +11,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Everything that has columns.
@@ -86,18 +87,21 @@ static void refine(struct dig_machine_search *const s)
     dig_fit_sum(&s->fit, NULL, NULL);
 }
 
+// Leaves out what slewing pulls beside all effects as the trusted rows have them.
+static bool leave_out_slewing(struct dig_machine_search *const s)
+{
+    struct dig_fit_answer all = { .at = s->fit.at };
+    dig_lines_update(&s->fit.lines, all_columns);
+    dig_fit_sum(&s->fit, NULL, NULL);
+    dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+    return dig_slew_leave_out(&s->fit.lines, s->fit.at);
+}
+
 // The equations without any effect and without what slewing pulls, rows as far as their own scatter
 // lets them be known.
 static void begin(struct dig_machine_search *const s)
 {
-    struct dig_fit_answer all = { .at = s->fit.at };
-    for (int round = 0; round < ROUNDS; round++) {
-        dig_lines_update(&s->fit.lines, all_columns);
-        dig_fit_sum(&s->fit, NULL, NULL);
-        dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
-        if (!dig_slew_leave_out(&s->fit.lines, s->fit.at)) {
-            break;
-        }
+    for (int round = 0; round < ROUNDS && leave_out_slewing(s); round++) {
     }
     s->noise2 = 1.0;
     if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
@@ -131,15 +135,20 @@ static double common_payload(const struct dig_machine_search *const s)
     return s->fit.lines.at[dig_lines_first(&s->fit.lines, DIG_EFFECT_PAYLOAD)];
 }
 
-// More effects than one trusts to be there at once share out the form of a cause that has none of
-// theirs; so does a payload that weighs less than nothing.
-static bool is_makeshift(const struct dig_machine_search *const s)
+static int effects_of(const struct dig_machine_search *const s)
 {
     int effects = 0;
     for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
     }
-    return effects > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
+    return effects;
+}
+
+// More effects than one trusts to be there at once share out the form of a cause that has none of
+// theirs; so does a payload that weighs less than nothing.
+static bool is_makeshift(const struct dig_machine_search *const s)
+{
+    return effects_of(s) > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
 }
 
 // Whether what is left of the rows is more than their noise.
@@ -232,6 +241,69 @@ static void select_effects(struct dig_machine_search *const s)
     }
 }
 
+// Nothing is explained, and only the rows of the air before digs are trusted, or of that after.
+static void trust_only(struct dig_machine_search *const s, const bool after)
+{
+    memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
+    for (size_t i = 0; i < s->air.segments; i++) {
+        const struct dig_air_segment *const segment = &s->air.segment[i];
+        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
+            s->fit.lines.trust[r] = segment->after == after ? 1.0 : 0.0;
+        }
+    }
+}
+
+static void trust_all(struct dig_machine_search *const s)
+{
+    for (size_t r = 0; r < s->air.rows; r++) {
+        s->fit.lines.trust[r] = 1.0;
+    }
+}
+
+// What was found before, where it stood.
+static void return_to(const struct dig_machine_search *const found,
+                      const struct dig_slew_rows *const rows, struct dig_machine_search *const s)
+{
+    *s = *found;
+    dig_slew_rows_restore(rows, &s->air);
+    (void)dig_lines_judge(&s->fit.lines);
+    dig_lines_update(&s->fit.lines, all_columns);
+    dig_fit_sum(&s->fit, NULL, NULL);
+}
+
+// All effects together may take what slewing pulls for their own, where it goes with the same
+// motion in every dig. Where air is not understood, what slewing would be beside the effects of the
+// air before digs alone, or of that after, is left out - if the rest is understood then. An effect
+// that explains all air is believed: what it pulls may look like slewing to half of the air.
+static enum dig_status select_without_slewing(struct dig_machine_search *const s)
+{
+    struct dig_slew_rows all    = { .row = NULL };
+    struct dig_slew_rows kept   = { .row = NULL };
+    enum dig_status      status = dig_slew_rows_save(&s->air, &all);
+    if (status == DIG_OK) {
+        select_effects(s);
+        status = dig_slew_rows_save(&s->air, &kept);
+    }
+    const struct dig_machine_search found = *s;
+    bool                            clear = !is_unclear(s);
+    const bool                      asked = status == DIG_OK && !clear;
+    for (int after = 0; after < 2 && asked && !clear; after++) {
+        dig_slew_rows_restore(&all, &s->air);
+        trust_only(s, after > 0);
+        if (leave_out_slewing(s)) {
+            trust_all(s);
+            select_effects(s);
+            clear = !is_unclear(s);
+        }
+    }
+    if (asked && !clear) {
+        return_to(&found, &kept, s);
+    }
+    free(all.row);
+    free(kept.row);
+    return status;
+}
+
 // How often each effect is chosen when the digs are drawn anew.
 static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
                       double inclusion[DIG_MACHINE_EFFECTS])
@@ -270,13 +342,37 @@ static void doubt_names(struct dig_machine_search *const s)
     }
 }
 
+static void write_finding(struct dig_machine_search *const s, const uint64_t seed,
+                          double                            own_payload_kg[DIG_MEASURED_MAX],
+                          struct dig_machine_finding *const finding)
+{
+    double inclusion[DIG_MACHINE_EFFECTS];
+    doubt_names(s);
+    const bool unclear = is_unclear(s) || s->drift.follows != NULL;
+    *finding = (struct dig_machine_finding){ .unexplained = unclear, .follows = s->drift.follows };
+    finding->residual_air = sqrt(s->rest2_none / (double)s->air.rows);
+    memcpy(finding->residual_air_of, s->none_of, sizeof s->none_of);
+    finding->significant = s->set != 0 || unclear;
+    bootstrap(s, seed, inclusion);
+    dig_machine_write_candidates(s, inclusion, finding);
+    dig_machine_write_own_payload(s, own_payload_kg);
+    if (!unclear) {
+        dig_machine_write_none(s, finding);
+        dig_machine_write_effects(s, inclusion, finding);
+        dig_machine_write_sets(s, finding);
+        dig_machine_write_answers(s, finding);
+    }
+    finding->p_complete =
+        fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
+}
+
 enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
                                        const double false_alarm, const uint64_t seed,
                                        struct dig_machine_finding *const finding)
 {
     assert(side != NULL && finding != NULL && false_alarm > 0.0);
     struct dig_machine_search s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
-    const enum dig_status     status = search_make(side, &s);
+    enum dig_status           status = search_make(side, &s);
     if (status == DIG_OK && s.air.rows == 0) {
         *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
                                                  .no_air       = true,
@@ -285,27 +381,10 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
             finding->residual_air_of[d] = (double)NAN;
         }
     } else if (status == DIG_OK) {
-        select_effects(&s);
-        doubt_names(&s);
-        const bool unclear = is_unclear(&s) || s.drift.follows != NULL;
-        double     inclusion[DIG_MACHINE_EFFECTS];
-
-        *finding =
-            (struct dig_machine_finding){ .unexplained = unclear, .follows = s.drift.follows };
-        finding->residual_air = sqrt(s.rest2_none / (double)s.air.rows);
-        memcpy(finding->residual_air_of, s.none_of, sizeof s.none_of);
-        finding->significant = s.set != 0 || unclear;
-        bootstrap(&s, seed, inclusion);
-        dig_machine_write_candidates(&s, inclusion, finding);
-        dig_machine_write_own_payload(&s, side->own_payload_kg);
-        if (!unclear) {
-            dig_machine_write_none(&s, finding);
-            dig_machine_write_effects(&s, inclusion, finding);
-            dig_machine_write_sets(&s, finding);
-            dig_machine_write_answers(&s, finding);
+        status = select_without_slewing(&s);
+        if (status == DIG_OK) {
+            write_finding(&s, seed, side->own_payload_kg, finding);
         }
-        finding->p_complete =
-            fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
     }
     search_finish(&s);
     return status;

@@ -73,6 +73,7 @@ struct fault {
     double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
     size_t stands;      // so many samples more, as the first, before the machine moves
     double slews_radps; // at most, from the first of those to the last
+    bool   slews_after; // from the end of the dig to that of the recording instead
     size_t every;       // one sample in so many is recorded; 0: all are
     bool   warms;       // the oil's temperature is recorded, and rises
     bool   bare;        // no pressures but the bucket's
@@ -189,15 +190,22 @@ static inline void lose_readings(const struct fault *const fault, uint64_t *cons
     }
 }
 
+static inline size_t last_of_soil(const struct dig_rig_track *const t)
+{
+    size_t last = t->rows - 1;
+    while (!(fabs(t->row[last].soil.M_Nm) > 0.0)) {
+        last--;
+    }
+    return last;
+}
+
 static inline void cut_air(const struct dig_rig_track *const   t,
                            struct dig_machine_recording *const r)
 {
-    size_t first = 0, last = t->rows - 1;
+    const size_t last  = last_of_soil(t);
+    size_t       first = 0;
     while (!(fabs(t->row[first].soil.M_Nm) > 0.0)) {
         first++;
-    }
-    while (!(fabs(t->row[last].soil.M_Nm) > 0.0)) {
-        last--;
     }
     r->rows = last + 1 - first;
     memmove(r->row, r->row + first, r->rows * sizeof *r->row);
@@ -220,6 +228,13 @@ static inline double carried_kg(const struct fault *const fault, const size_t or
     return order > 1 || !fault->falls_out ? fault->payload_kg : 0.0;
 }
 
+static inline double slewing_radps(const struct fault *const fault, const size_t row,
+                                   const size_t from, const size_t to)
+{
+    const double part = ((double)row - (double)from) / (double)(to - from + 1);
+    return part > 0.0 && part < 1.0 ? fault->slews_radps * sin(DIG_PI * part) : 0.0;
+}
+
 static inline struct dig_machine_recording
 record(const int kind, const size_t order, const struct fault *const fault, const uint64_t seed)
 {
@@ -229,9 +244,11 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
     struct dig_rig_noise              noise = dig_rig_noise_init(seed);
     const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
     const double                      kept  = exp(-t->step_s / 0.1);
-    double                            hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
-    double                            bent_m[DIG_JOINTS]       = { 0.0 };
-    uint64_t                          state                    = seed;
+    const size_t slew_from = fault->slews_after ? fault->stands + last_of_soil(t) : 0;
+    const size_t slew_to   = fault->slews_after ? rows - 1 : fault->stands;
+    double       hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
+    double       bent_m[DIG_JOINTS]       = { 0.0 };
+    uint64_t     state                    = seed;
     for (size_t i = 0; i < rows; i++) {
         const size_t       now  = i > fault->stands ? i - fault->stands : 0;
         const size_t       then = now > late ? now - late : 0;
@@ -246,9 +263,7 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
             for (int link = j; link < DIG_JOINTS; link++) {
                 push_more(&row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
             }
-            const double part = (double)i / (double)(fault->stands + 1);
-            push_more(&row, j,
-                      slew_N(&row, j, part < 1.0 ? fault->slews_radps * sin(DIG_PI * part) : 0.0));
+            push_more(&row, j, slew_N(&row, j, slewing_radps(fault, i, slew_from, slew_to)));
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;

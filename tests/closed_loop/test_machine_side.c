@@ -353,6 +353,15 @@ TEST(a_machine_that_slews_raises_no_alarm_and_hides_no_seal)
     end(c);
 }
 
+// All effects together stand in for it there: it goes with the same motion in every dig.
+TEST(a_machine_that_slews_as_it_closes_its_bucket_hides_no_seal)
+{
+    const struct fault     both = { .slews_radps = 1.0, .slews_after = true, .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&both, 104);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
