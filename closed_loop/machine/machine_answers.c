@@ -12,6 +12,9 @@ static const double ninety = 1.645;
 // In a parameter's scale squared: as good as none.
 static const double least_variance = 1e-10;
 
+// In its scale: what is off by no more changes no gravel.
+static const double least_far = 0.02;
+
 static size_t write_parameters(const struct dig_machine_search *const s,
                                const enum dig_effect_id id, struct dig_model_parameter parameter[])
 {
@@ -96,6 +99,100 @@ static void write_steps(const struct dig_machine_search *const s,
     }
 }
 
+// One number of an effect beside an answer, as free air has it.
+struct beside {
+    size_t column;
+    double log_weight; // against the answer
+    double far;        // from absent, root mean square in its scale
+};
+
+// Solves for it beside an answer's effects, whose priors are so wide.
+static void solve_beside(const struct dig_machine_search *const s, const double widths[],
+                         const size_t column, struct dig_fit_answer *const solved)
+{
+    double with[DIG_LINES_COLUMNS_MAX];
+    memcpy(with, widths, s->fit.lines.columns * sizeof with[0]);
+    with[column] = 1.0;
+    dig_fit_solve_each(&s->fit, with, solved);
+}
+
+// All such numbers; how many.
+static size_t find_beside(struct dig_machine_search *const s, const double widths[],
+                          struct beside beside[DIG_LINES_COLUMNS_MAX])
+{
+    const size_t          n      = s->fit.lines.columns;
+    struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
+    size_t                found  = 0;
+    dig_fit_solve_each(&s->fit, widths, &solved);
+    const double without = solved.log_evidence;
+    for (size_t c = 0; c < n; c++) {
+        const struct dig_lines_column *const column = &s->fit.lines.column[c];
+        if (widths[c] > 0.0 || column->segment >= 0 || dig_lines_is_bent(&s->fit.lines, c)) {
+            continue;
+        }
+        solve_beside(s, widths, c, &solved);
+        beside[found++] = (struct beside){
+            .column     = c,
+            .log_weight = solved.log_evidence - without -
+                          log((double)dig_effect_of(column->effect)->parameters),
+            .far = hypot(s->fit.at[c], sqrt(s->fit.covariance[(n + 1) * c])),
+        };
+    }
+    return found;
+}
+
+// Makes far what it is in the mixture, and leaves the farthest first.
+static void mix(const size_t n, struct beside beside[])
+{
+    double most = 0.0; // of the answer itself
+    double sum  = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = fmax(most, beside[i].log_weight);
+    }
+    for (size_t i = 0; i < n; i++) {
+        sum += exp(beside[i].log_weight - most);
+    }
+    for (size_t i = 0; i < n; i++) {
+        struct beside now = beside[i];
+        size_t        to  = i;
+        now.far *= sqrt(exp(now.log_weight - most) / (exp(-most) + sum));
+        for (; to > 0 && beside[to - 1].far < now.far; to--) {
+            beside[to] = beside[to - 1];
+        }
+        beside[to] = now;
+    }
+}
+
+// What of the effects that an answer lacks free air leaves open beside it. Overwrites what was last
+// solved.
+static void write_others(struct dig_machine_search *const s, const struct numbers *const numbers,
+                         const double widths[], struct dig_machine_answer *const answer)
+{
+    const size_t  n = s->fit.lines.columns;
+    struct beside beside[DIG_LINES_COLUMNS_MAX];
+    const size_t  found = find_beside(s, widths, beside);
+    mix(found, beside);
+    for (size_t i = 0; i < found && answer->others < DIG_MACHINE_OTHERS; i++) {
+        const size_t                         c      = beside[i].column;
+        const struct dig_lines_column *const column = &s->fit.lines.column[c];
+        struct dig_machine_other *const      other  = &answer->other[answer->others];
+        struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
+        if (!(beside[i].far > least_far)) {
+            break;
+        }
+        solve_beside(s, widths, c, &solved);
+        *other = (struct dig_machine_other){ .effect    = column->effect,
+                                             .parameter = column->parameter,
+                                             .value     = column->scale * beside[i].far };
+        for (size_t k = 0; k < numbers->n; k++) {
+            const double slope =
+                s->fit.covariance[numbers->column[k] * n + c] / s->fit.covariance[(n + 1) * c];
+            other->with[k] = numbers->scale[k] * slope * beside[i].far;
+        }
+        answer->others++;
+    }
+}
+
 // One answer by the narrow priors or the wide ones: its values, and what is open of them. False
 // where the wide ones are the narrow ones.
 static bool write_answer(struct dig_machine_search *const s, const size_t effects,
@@ -135,6 +232,11 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
     dig_lines_file(&s->fit.lines, s->fit.at, answer->file);
     memcpy(&answer->value[n], answer->file, sizeof answer->file);
     write_steps(s, &numbers, answer);
+    if (answer->numbers > 0) {
+        double widths[DIG_LINES_COLUMNS_MAX];
+        dig_fit_widths(&s->fit, set, solved.width, widths);
+        write_others(s, &numbers, widths, answer);
+    }
     return true;
 }
 

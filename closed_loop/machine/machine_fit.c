@@ -100,10 +100,10 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
     }
 }
 
-// The same width for all columns of a set; of what the file may have wrong, its tolerance.
-static void give_width(const struct dig_fit *const fit, const unsigned set, const double wide,
-                       double widths[])
+void dig_fit_widths(const struct dig_fit *const fit, const unsigned set, const double wide,
+                    double widths[])
 {
+    assert(fit != NULL && widths != NULL);
     for (size_t c = 0; c < fit->lines.columns; c++) {
         const enum dig_effect_id effect = fit->lines.column[c].effect;
 
@@ -116,7 +116,7 @@ static void solve_at(const struct dig_fit *const fit, const unsigned set, const 
                      struct dig_fit_answer *const answer)
 {
     double widths[DIG_LINES_COLUMNS_MAX];
-    give_width(fit, set, width[wide], widths);
+    dig_fit_widths(fit, set, width[wide], widths);
     dig_fit_solve_each(fit, widths, answer);
     answer->log_evidence -= fit->log_none;
     answer->width = width[wide];
@@ -149,7 +149,7 @@ void dig_fit_set_noise(struct dig_fit *const fit, const double s2)
     assert(fit != NULL && s2 > 0.0);
     struct dig_fit_answer none = { .at = NULL };
     double                widths[DIG_LINES_COLUMNS_MAX];
-    give_width(fit, 0, 0.0, widths);
+    dig_fit_widths(fit, 0, 0.0, widths);
     fit->s2 = s2;
     dig_fit_solve_each(fit, widths, &none);
     fit->log_none = none.log_evidence;
@@ -182,7 +182,7 @@ void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double 
 
     struct dig_fit_answer best = { .at = NULL };
     double                effects[DIG_LINES_COLUMNS_MAX];
-    give_width(fit, DIG_MACHINE_ALL_EFFECTS, width[SCALE], effects);
+    dig_fit_widths(fit, DIG_MACHINE_ALL_EFFECTS, width[SCALE], effects);
     fit->s2 = 1.0;
     dig_fit_solve_each(fit, widths != NULL ? widths : effects, &best);
     const double free_rows = fmax(fit->rows - (double)n, 0.25 * fit->rows);

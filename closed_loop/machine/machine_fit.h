@@ -66,6 +66,10 @@ void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answe
 /// tells of a parameter.
 void dig_fit_solve_wide(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
+/// The same width for all columns of a set; of what the file may have wrong, its tolerance; 0 for
+/// all others.
+void dig_fit_widths(const struct dig_fit *fit, unsigned set, double wide, double widths[]);
+
 /// Every column with a prior of its own width, in scales; 0: it stays absent. The evidence is that
 /// of these priors, without a choice of widths; answer->width is 1.
 void dig_fit_solve_each(const struct dig_fit *fit, const double widths[],

@@ -27,8 +27,19 @@ void dig_machine_side_destroy(struct dig_machine_side *side);
 
 #define DIG_MACHINE_AT_ONCE 2 // effects of the machine in one answer
 #define DIG_MACHINE_ANSWERS (2 * (DIG_MACHINE_EFFECTS + 1))
+#define DIG_MACHINE_OTHERS  12
 #define DIG_MACHINE_NUMBERS                                                                        \
     (DIG_MACHINE_AT_ONCE * DIG_MODEL_PARAMETERS_MAX + DIG_FILE_ERRORS) // DIG_STEPS_MAX
+
+/// A number of an effect beside an answer that lacks it, which free air does not exclude: 1 sigma
+/// of the mixture of the answer and the answer with any one such number. Beside an answer all
+/// effects are as likely before as none, the numbers of each alike.
+struct dig_machine_other {
+    enum dig_effect_id effect;
+    size_t             parameter;
+    double             value;
+    double             with[DIG_MACHINE_NUMBERS]; // what the answer's numbers do meanwhile
+};
 
 /// One answer of free air: effects with their values by one prior (machine_fit.h), what the file
 /// has wrong beside them, and what it leaves open of these. With z of normal distribution the
@@ -36,14 +47,16 @@ void dig_machine_side_destroy(struct dig_machine_side *side);
 /// The prior that free air likes best is narrow, and says nothing of what free air does not tell;
 /// the wide one leaves that to the digs.
 struct dig_machine_answer {
-    size_t                  effects;
-    struct dig_model_effect effect[DIG_MACHINE_AT_ONCE];
-    bool                    wide; // by the wide prior, not by the one free air likes best
-    double                  file[DIG_FILE_ERRORS];
-    double                  log_evidence; // of free air, against no effect
-    size_t                  numbers; // parameters of all its effects, and the file's; 0: not told
-    double                  value[DIG_MACHINE_NUMBERS];
-    double                  step[DIG_MACHINE_NUMBERS][DIG_MACHINE_NUMBERS]; // [k][parameter]
+    size_t                   effects;
+    struct dig_model_effect  effect[DIG_MACHINE_AT_ONCE];
+    bool                     wide; // by the wide prior, not by the one free air likes best
+    double                   file[DIG_FILE_ERRORS];
+    double                   log_evidence; // of free air, against no effect
+    size_t                   numbers; // parameters of all its effects, and the file's; 0: not told
+    double                   value[DIG_MACHINE_NUMBERS];
+    double                   step[DIG_MACHINE_NUMBERS][DIG_MACHINE_NUMBERS]; // [k][parameter]
+    size_t                   others; // the farthest first, in their scales
+    struct dig_machine_other other[DIG_MACHINE_OTHERS];
 };
 
 /// What free air says.

@@ -9,6 +9,7 @@
 
 #include "closed_loop/recordings/features.h"
 #include "closed_loop/verdict/trace_work.h"
+#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
@@ -60,17 +61,15 @@ enum dig_status dig_trace_apply(const struct dig_trace_work *const w, const size
     return status;
 }
 
-// What the machine adds to the means at z, roughly: in differences it is enough.
-static enum dig_status added_at(const struct dig_trace_work *const     w,
-                                const struct dig_machine_answer *const answer, const double z[],
-                                double added[][DIG_FEATURES])
+// What effects of the machine and of its file add to the means, roughly: in differences it is
+// enough.
+static enum dig_status added_by(const struct dig_trace_work *const w, const size_t effects,
+                                const struct dig_model_effect effect[],
+                                const double file[DIG_FILE_ERRORS], double added[][DIG_FEATURES])
 {
-    double                    machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    struct dig_machine_answer there = *answer;
-    dig_machine_steps_values(z, NULL, &there);
-    const enum dig_status status =
-        dig_machine_side_apply(w->machine, there.effects, there.effect, there.file,
-                               DIG_APPLY_ROUGHLY, w->measured, machine);
+    double                machine[DIG_MEASURED_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    const enum dig_status status = dig_machine_side_apply(w->machine, effects, effect, file,
+                                                          DIG_APPLY_ROUGHLY, w->measured, machine);
     if (status != DIG_OK) {
         return status;
     }
@@ -88,6 +87,39 @@ static enum dig_status added_at(const struct dig_trace_work *const     w,
     return DIG_OK;
 }
 
+// The same of an answer at z.
+static enum dig_status added_at(const struct dig_trace_work *const     w,
+                                const struct dig_machine_answer *const answer, const double z[],
+                                double added[][DIG_FEATURES])
+{
+    struct dig_machine_answer there = *answer;
+    dig_machine_steps_values(z, NULL, &there);
+    return added_by(w, there.effects, there.effect, there.file, added);
+}
+
+// The same of an answer with one number beside it.
+static enum dig_status added_with(const struct dig_trace_work *const     w,
+                                  const struct dig_machine_answer *const answer,
+                                  const struct dig_machine_other *const  other,
+                                  double                                 added[][DIG_FEATURES])
+{
+    const double                             z[DIG_MACHINE_NUMBERS] = { 0.0 };
+    const struct dig_effect                 *of                     = dig_effect_of(other->effect);
+    const struct dig_effect_parameter *const parameter = &of->parameter[other->parameter];
+    struct dig_machine_answer                there     = *answer;
+    struct dig_model_effect                  effect[DIG_MACHINE_AT_ONCE + 1];
+    for (size_t i = 0; i < answer->numbers; i++) {
+        there.value[i] += other->with[i];
+    }
+    dig_machine_steps_values(z, NULL, &there);
+    memcpy(effect, there.effect, there.effects * sizeof effect[0]);
+    struct dig_model_effect *const beside = &effect[there.effects];
+    *beside = (struct dig_model_effect){ .effect = other->effect, .parameters = 1 };
+    memcpy(beside->parameter[0].name, parameter->name, strlen(parameter->name) + 1);
+    beside->parameter[0].value = parameter->absent + other->value;
+    return added_by(w, there.effects + 1, effect, there.file, added);
+}
+
 // Whether a step changes anything: what the file has exactly is not open.
 static bool is_open(const struct dig_machine_answer *const answer, const size_t k)
 {
@@ -96,6 +128,17 @@ static bool is_open(const struct dig_machine_answer *const answer, const size_t 
         open = open || fabs(answer->step[k][i]) > 0.0;
     }
     return open;
+}
+
+// Leaves how much more one is than the other; of a way that was not told nothing.
+static void take_off(const enum dig_status status, double middle[][DIG_FEATURES],
+                     double of[][DIG_FEATURES])
+{
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            of[t][f] = status == DIG_OK ? of[t][f] - middle[t][f] : 0.0;
+        }
+    }
 }
 
 enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
@@ -123,12 +166,27 @@ enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
         z[k]   = 1.0;
         status = added_at(w, answer, z, steps->of[k]);
         z[k]   = 0.0;
-        for (size_t t = 0; t < DIG_TRAJECTORY_MAX && status == DIG_OK; t++) {
-            for (size_t f = 0; f < DIG_FEATURES; f++) {
-                steps->of[k][t][f] -= middle[t][f];
-            }
-        }
+        take_off(status, middle, steps->of[k]);
         // A step at which a dig is not told is a way that stays shut.
+        status = status == DIG_ENOMATCH ? DIG_OK : status;
+    }
+    return status;
+}
+
+enum dig_status dig_machine_others_make(const struct dig_trace_work *const     w,
+                                        const struct dig_machine_answer *const answer,
+                                        struct dig_steps *const                steps)
+{
+    assert(w != NULL && answer != NULL && steps != NULL && steps->steps == answer->numbers);
+    const double    z[DIG_MACHINE_NUMBERS] = { 0.0 };
+    double          middle[DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    enum dig_status status = added_at(w, answer, z, middle);
+    for (size_t i = 0; i < answer->others && steps->steps < DIG_STEPS_MAX && status == DIG_OK;
+         i++) {
+        const size_t k   = steps->steps++;
+        steps->middle[k] = 0.0;
+        status           = added_with(w, answer, &answer->other[i], steps->of[k]);
+        take_off(status, middle, steps->of[k]);
         status = status == DIG_ENOMATCH ? DIG_OK : status;
     }
     return status;

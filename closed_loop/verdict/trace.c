@@ -230,13 +230,27 @@ static void weigh_soil(const struct dig_trace_work *const w)
     }
 }
 
-// How well what was found is known (covariance: of what is open of the machine), and what cannot be
-// told from it. Of what has lost, nothing is said.
-static void find_intervals(const struct dig_trace_work *const w, double covariance[])
+// Of what is open of the answer alone: n of the numbers.
+static void keep_first(const size_t n, const size_t numbers, double covariance[])
 {
-    struct dig_search *const              s     = w->search;
-    const struct dig_candidate_set *const alike = &s->alike;
-    const uint64_t                        seed  = w->settings->seed;
+    for (size_t i = 0; i < n; i++) {
+        memmove(covariance + i * n, covariance + i * numbers, n * sizeof covariance[0]);
+    }
+}
+
+// How well what was found is known (covariance: of what is open of the machine), and what cannot be
+// told from it. Of what has lost, nothing is said. Effects of the machine that were not chosen are
+// open here, as far as free air does not exclude them.
+static enum dig_status find_intervals(const struct dig_trace_work *const w, double covariance[])
+{
+    struct dig_search *const              s      = w->search;
+    const struct dig_candidate_set *const alike  = &s->alike;
+    struct dig_trace_open *const          open   = w->open;
+    const uint64_t                        seed   = w->settings->seed;
+    enum dig_status                       status = DIG_OK;
+    if (w->batch->steps != NULL) {
+        status = dig_machine_others_make(w, &open->answer, &open->steps);
+    }
     dig_posterior_intervals(w->batch, seed, &s->chosen, covariance);
     for (size_t i = 0; i < s->rivals; i++) {
         struct dig_fitted *const f      = &s->rival[i].fitted;
@@ -250,6 +264,9 @@ static void find_intervals(const struct dig_trace_work *const w, double covarian
             f->high[j] = (double)NAN;
         }
     }
+    keep_first(open->answer.numbers, open->steps.steps, covariance);
+    open->steps.steps = open->answer.numbers;
+    return status;
 }
 
 static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *const trace,
@@ -284,8 +301,10 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     choose_rate(w);
     dig_search_run(w->batch, level, settings->bootstraps, settings->seed, w->search);
     dig_trace_doubt_soil(w);
-    find_intervals(w, covariance);
-    status = dig_trace_settle_machine(w, covariance);
+    status = find_intervals(w, covariance);
+    if (status == DIG_OK) {
+        status = dig_trace_settle_machine(w, covariance);
+    }
     if (status != DIG_OK) {
         return status;
     }

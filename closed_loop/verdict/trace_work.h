@@ -57,6 +57,12 @@ DIG_MUST_CHECK enum dig_status dig_machine_steps_make(const struct dig_trace_wor
                                                       const struct dig_machine_answer *answer,
                                                       struct dig_steps                *steps);
 
+/// Adds to the steps of an answer, as many as there is room for, what its others add to the mean
+/// digs.
+DIG_MUST_CHECK enum dig_status dig_machine_others_make(const struct dig_trace_work     *w,
+                                                       const struct dig_machine_answer *answer,
+                                                       struct dig_steps                *steps);
+
 /// Writes values and 90 % intervals of the answer's parameters: at z, whose covariance is
 /// [numbers * numbers] (NULL: the values alone).
 void dig_machine_steps_values(const double z[], const double covariance[],

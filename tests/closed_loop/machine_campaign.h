@@ -57,11 +57,12 @@ static inline int tear_down(void **state)
 
 // What the machine does that its file does not say.
 struct fault {
-    double dry_N;  // the bucket cylinder's seal, against its motion
-    double held_N; // seals of all drives that bend .2 mm before they slip, and stay bent
-    double rod_Pa; // the bucket's rod side sensor reads so much more
-    double gain;   // the bucket's head side sensor reads 1 + this times what is there
-    double late_s; // pressures are so old
+    double dry_N;     // the bucket cylinder's seal, against its motion
+    double held_N;    // seals of all drives that bend .2 mm before they slip, and stay bent
+    double rod_Pa;    // the bucket's rod side sensor reads so much more
+    double gain;      // the bucket's head side sensor reads 1 + this times what is there
+    double boom_gain; // the boom's, likewise
+    double late_s;    // pressures are so old
     double heavier_kg[DIG_JOINTS]; // a link, in its centre of mass
     double angle_rad[DIG_JOINTS];  // its sensor reads so much more
     double payload_kg;             // in the middle of the bucket, from the second dig on
@@ -268,6 +269,7 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
         row.pressures.head_Pa[DIG_JOINT_BUCKET] *= 1.0 + fault->gain;
+        row.pressures.head_Pa[DIG_JOINT_BOOM] *= 1.0 + fault->boom_gain;
         for (int p = 0; p < 2 * DIG_JOINTS; p++) {
             hunts_Pa[p] = kept * hunts_Pa[p] +
                           sqrt(1.0 - kept * kept) * fault->hunting_Pa * model_normal(&state);

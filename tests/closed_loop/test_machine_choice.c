@@ -65,6 +65,25 @@ TEST(a_gain_that_free_air_leaves_open_is_told_by_the_digs)
     dig_trace_finish(&result);
 }
 
+// In free air it is a boom and an arm that are heavier, within their tolerance; in digs it is not.
+TEST(what_free_air_leaves_open_of_an_effect_without_a_name_is_open_in_the_gravel)
+{
+    const struct fault fault  = { .boom_gain = 0.06 };
+    const struct fault none   = { .boom_gain = 0.0 };
+    struct dig_trace   result = traced(&fault, 5);
+    struct dig_trace   oracle = traced(&none, 5);
+    assert_int_equal(result.effects, 0);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        const double low = result.low.value[a], high = result.high.value[a];
+        print_message("%.4g (%.4g to %.4g), without it %.4g (%.4g to %.4g)\n",
+                      result.gravel.value[a], low, high, oracle.gravel.value[a],
+                      oracle.low.value[a], oracle.high.value[a]);
+        assert_true(low <= oracle.gravel.value[a] && oracle.gravel.value[a] <= high);
+    }
+    dig_trace_finish(&oracle);
+    dig_trace_finish(&result);
+}
+
 TEST(a_machine_as_its_file_says_is_left_alone)
 {
     const struct fault none   = { .gain = 0.0 };
