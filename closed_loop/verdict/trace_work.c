@@ -138,9 +138,9 @@ static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *c
 
 // Of digs that are whitened otherwise, too, in units of the table. What was taken off was dug in
 // few beds: so much is to be expected of it in the digs about their means.
-double dig_trace_misfit(const struct dig_trace_work *const w, const struct dig_fitted *const plain)
+double dig_trace_misfit(const struct dig_trace_work *const w, const struct dig_fitted *const fitted)
 {
-    double misfit = plain->misfit;
+    double misfit = fitted->misfit;
     for (size_t i = 0; i < w->batch->digs; i++) {
         const struct dig_whitened_digs_dig *const   dig   = &w->batch->dig[i];
         const struct dig_whitened_digs_group *const group = &w->batch->group[dig->group];
