@@ -7,9 +7,6 @@
 #include "tests/firmware_host/lcm_read_back.h"
 #include "tests/scratch.h"
 
-LAST(estimate)
-LAST(health)
-
 TEST(a_record_is_a_sample_and_its_estimate)
 {
     struct dig_output *const output          = begin("record.lcm");
@@ -45,29 +42,29 @@ TEST(a_record_is_a_sample_and_its_estimate)
     assert_int_equal(dig_output_record(output, set(), &record), DIG_OK);
     dig_output_destroy(output);
 
-    digsight_estimate_t *const m = last_estimate("record.lcm", 2);
-    assert_string_equal(m->trajectory, "");
-    assert_string_equal(m->missing, "arm_rad, boom_rod_Pa");
-    assert_true(isnan(m->progress));
-    assert_int_equal(m->moment_valid, 1);
-    assert_int_equal(m->force_valid, 0);
-    assert_close(m->force_x_N, 1.0, 0.0);
-    assert_close(m->force_z_N, 2.0, 0.0);
-    assert_close(m->moment_Nm, 3.0, 0.0);
-    assert_close(m->sigma_force_x_N, 0.1, 0.0);
-    assert_close(m->sigma_moment_Nm, 0.3, 0.0);
-    assert_close(m->geometry_sigma_force_x_N, 0.4, 0.0);
-    assert_close(m->geometry_sigma_force_z_N, 0.5, 0.0);
-    assert_close(m->geometry_sigma_moment_Nm, 0.6, 0.0);
-    assert_close(m->pin_X_m, 4.0, 0.0);
-    assert_close(m->pin_Z_m, 5.0, 0.0);
-    assert_close(m->bucket_phi_rad, 6.0, 0.0);
-    assert_int_equal(m->phase, 2);
-    assert_int_equal(m->motion, 3);
-    assert_int_equal(m->dig_count, 7);
-    assert_true(m->expires_ns == 250);
-    assert_string_equal(m->advice, DIG_ADVICE);
-    digsight_estimate_t_destroy(m);
+    const struct seen seen = read_back("record.lcm");
+    assert_int_equal(seen.estimates, 2);
+    assert_string_equal(seen.trajectory[0], "");
+    assert_string_equal(seen.text[0], "arm_rad, boom_rod_Pa");
+    assert_true(isnan(seen.estimate.progress));
+    assert_int_equal(seen.estimate.moment_valid, 1);
+    assert_int_equal(seen.estimate.force_valid, 0);
+    assert_close(seen.estimate.force_x_N, 1.0, 0.0);
+    assert_close(seen.estimate.force_z_N, 2.0, 0.0);
+    assert_close(seen.estimate.moment_Nm, 3.0, 0.0);
+    assert_close(seen.estimate.sigma_force_x_N, 0.1, 0.0);
+    assert_close(seen.estimate.sigma_moment_Nm, 0.3, 0.0);
+    assert_close(seen.estimate.geometry_sigma_force_x_N, 0.4, 0.0);
+    assert_close(seen.estimate.geometry_sigma_force_z_N, 0.5, 0.0);
+    assert_close(seen.estimate.geometry_sigma_moment_Nm, 0.6, 0.0);
+    assert_close(seen.estimate.pin_X_m, 4.0, 0.0);
+    assert_close(seen.estimate.pin_Z_m, 5.0, 0.0);
+    assert_close(seen.estimate.bucket_phi_rad, 6.0, 0.0);
+    assert_int_equal(seen.estimate.phase, 2);
+    assert_int_equal(seen.estimate.motion, 3);
+    assert_int_equal(seen.estimate.dig_count, 7);
+    assert_true(seen.estimate.expires_ns == 250);
+    assert_string_equal(seen.text[2], DIG_ADVICE);
 
     struct dig_machine_recording samples;
     assert_int_equal(dig_lcm_log_read(scratch_path("record.lcm"), &samples, NULL), DIG_OK);
@@ -125,36 +122,25 @@ TEST(health_carries_every_counter)
     };
     assert_int_equal(dig_output_health(output, &health), DIG_OK);
     dig_output_destroy(output);
-    digsight_health_t *const m    = last_health("health.lcm", 1);
-    int64_t                  late = 0;
-    assert_int_equal(m->latency_bins, DIG_LATENCY_BINS);
-    for (int i = 0; i < m->latency_bins; i++) {
-        late += m->latency_count[i];
-        assert_true(i == 0 || m->latency_to_us[i] > m->latency_to_us[i - 1]);
-    }
-    assert_int_equal(late, 100);
-    assert_string_equal(m->state, "running");
-    assert_string_equal(m->input, "can vcan0");
-    assert_string_equal(m->note, "trouble");
-    assert_string_equal(m->missing_signals, "arm_rod_Pa");
-    assert_true(m->dropped_jump == 15 && m->dropped_stuck == 16 && m->dropped_repeated == 17);
-    assert_true(m->missed == 18 && m->dropped_checksum == 19 && m->error_frames == 20);
-    assert_true(m->bus_offs == 21 && m->timeouts == 22 && m->unsent == 23);
-    assert_true(m->reloads == 24 && m->reloads_refused == 25 && m->without_force == 26);
-    assert_close(m->worst_tick_cpu_us, 3.5, 0.0);
-    assert_close(m->latency_p99_us, 16.0 * pow(2.0, 2.5), 1e-9);
-    assert_string_equal(m->table, "abc123");
-    assert_string_equal(m->advice, DIG_ADVICE);
-    assert_true(m->realtime == 1 && m->memory_locked == 0);
-    assert_true(m->ticks == 1 && m->overruns == 2 && m->missing == 3);
-    assert_close(m->worst_tick_us, 4.5, 0.0);
-    assert_close(m->worst_late_us, 2.5, 0.0);
-    assert_true(m->dropped_nan == 5 && m->dropped_not_available == 6 &&
-                m->dropped_out_of_range == 7);
-    assert_true(m->dropped_frozen == 8 && m->dropped_malformed == 11 && m->digs == 9);
-    assert_true(m->digs_whole == 27 && m->digs_aborted == 28 && m->digs_unknown == 29);
-    assert_true(m->frames == 10 && m->reconnects == 12 && m->lost == 13 && m->matches == 14);
-    digsight_health_t_destroy(m);
+    const struct seen       seen = read_back("health.lcm");
+    const digsight_health_t m    = seen.health;
+    assert_true(m.dropped_jump == 15 && m.dropped_stuck == 16 && m.dropped_repeated == 17);
+    assert_true(m.missed == 18 && m.dropped_checksum == 19 && m.error_frames == 20);
+    assert_true(m.bus_offs == 21 && m.timeouts == 22 && m.unsent == 23);
+    assert_true(m.reloads == 24 && m.reloads_refused == 25 && m.without_force == 26);
+    assert_close(m.worst_tick_cpu_us, 3.5, 0.0);
+    assert_close(m.latency_p99_us, 16.0 * pow(2.0, 2.5), 1e-9);
+    assert_int_equal(seen.late, 100);
+    assert_string_equal(seen.text[0], "abc123");
+    assert_string_equal(seen.text[2], DIG_ADVICE);
+    assert_true(m.realtime == 1 && m.memory_locked == 0);
+    assert_true(m.ticks == 1 && m.overruns == 2 && m.missing == 3);
+    assert_close(m.worst_tick_us, 4.5, 0.0);
+    assert_close(m.worst_late_us, 2.5, 0.0);
+    assert_true(m.dropped_nan == 5 && m.dropped_not_available == 6 && m.dropped_out_of_range == 7);
+    assert_true(m.dropped_frozen == 8 && m.dropped_malformed == 11 && m.digs == 9);
+    assert_true(m.digs_whole == 27 && m.digs_aborted == 28 && m.digs_unknown == 29);
+    assert_true(m.frames == 10 && m.reconnects == 12 && m.lost == 13 && m.matches == 14);
 }
 
 TEST(latencies_are_counted_where_they_lie)

@@ -6,9 +6,6 @@
 #include "tests/firmware_host/lcm_read_back.h"
 #include "tests/scratch.h"
 
-LAST(match)
-LAST(prediction)
-
 TEST(a_match_names_gravel_interval_and_table)
 {
     struct dig_output *const    output = begin("match.lcm");
@@ -48,41 +45,41 @@ TEST(a_match_names_gravel_interval_and_table)
     };
     assert_int_equal(dig_output_match(output, &result), DIG_OK);
     dig_output_destroy(output);
-    digsight_match_t *const m = last_match("match.lcm", 1);
-    assert_close(m->depth, 1.25, 0.0);
-    assert_close(m->attack_rad, 0.02, 0.0);
-    assert_close(m->matched_depth, 1.2, 0.0);
-    assert_close(m->matched_attack_rad, 0.01, 0.0);
-    assert_string_equal(m->trajectory, "simpleA");
-    assert_string_equal(m->table, "abc123");
-    assert_int_equal(m->outside, 1);
-    assert_int_equal(m->forces, 1);
-    assert_close(m->nearest_friction, 0.6, 0.0);
-    assert_close(m->nearest_density_kgpm3, 2500, 0.0);
-    assert_int_equal(m->weighted_entry, 4);
-    assert_close(m->weighted_friction, 0.7, 0.0);
-    assert_close(m->weighted_rolling, 0.3, 0.0);
-    assert_close(m->weighted_density_kgpm3, 2600, 0.0);
-    assert_close(m->weighted_distance, 1.25, 0.0);
-    assert_close(m->friction, 0.5, 0.0);
-    assert_close(m->friction_low, 0.4, 0.0);
-    assert_close(m->rolling_high, 0.2, 0.0);
-    assert_close(m->density_kgpm3, 2000, 0.0);
-    assert_close(m->density_low_kgpm3, 1800, 0.0);
-    assert_close(m->noise_floor, 0.05, 0.0);
-    assert_true(m->expires_ns == 77 && m->restored == 1);
-    assert_close(m->drift, 1.5, 0.0);
-    assert_int_equal(m->samples, 2);
-    assert_int_equal(m->family, 1);
-    assert_int_equal(m->ending, 2);
-    assert_string_equal(m->untold, "rolling, density_kgpm3");
-    assert_close(m->hint_J_per_kg, 12.5, 0.0);
-    assert_string_equal(m->wanted, "a simple dig");
-    assert_string_equal(m->hint_trajectory, "actual");
-    assert_string_equal(m->advice, DIG_ADVICE);
-    assert_close(m->sample_friction[0], 0.4, 0.0);
-    assert_close(m->sample_density_kgpm3[1], 2100, 0.0);
-    digsight_match_t_destroy(m);
+    const struct seen seen = read_back("match.lcm");
+    assert_int_equal(seen.matches, 1);
+    assert_close(seen.match.depth, 1.25, 0.0);
+    assert_close(seen.match.attack_rad, 0.02, 0.0);
+    assert_close(seen.match.matched_depth, 1.2, 0.0);
+    assert_close(seen.match.matched_attack_rad, 0.01, 0.0);
+    assert_string_equal(seen.trajectory[1], "simpleA");
+    assert_string_equal(seen.trajectory[3], "abc123");
+    assert_int_equal(seen.match.outside, 1);
+    assert_int_equal(seen.match.forces, 1);
+    assert_close(seen.match.nearest_friction, 0.6, 0.0);
+    assert_close(seen.match.nearest_density_kgpm3, 2500, 0.0);
+    assert_int_equal(seen.match.weighted_entry, 4);
+    assert_close(seen.match.weighted_friction, 0.7, 0.0);
+    assert_close(seen.match.weighted_rolling, 0.3, 0.0);
+    assert_close(seen.match.weighted_density_kgpm3, 2600, 0.0);
+    assert_close(seen.match.weighted_distance, 1.25, 0.0);
+    assert_close(seen.match.friction, 0.5, 0.0);
+    assert_close(seen.match.friction_low, 0.4, 0.0);
+    assert_close(seen.match.rolling_high, 0.2, 0.0);
+    assert_close(seen.match.density_kgpm3, 2000, 0.0);
+    assert_close(seen.match.density_low_kgpm3, 1800, 0.0);
+    assert_close(seen.match.noise_floor, 0.05, 0.0);
+    assert_true(seen.match.expires_ns == 77 && seen.match.restored == 1);
+    assert_close(seen.match.drift, 1.5, 0.0);
+    assert_int_equal(seen.match.samples, 2);
+    assert_int_equal(seen.match.family, 1);
+    assert_int_equal(seen.match.ending, 2);
+    assert_string_equal(seen.untold, "rolling, density_kgpm3");
+    assert_close(seen.match.hint_J_per_kg, 12.5, 0.0);
+    assert_string_equal(seen.text[0], "a simple dig");
+    assert_string_equal(seen.text[1], "actual");
+    assert_string_equal(seen.text[2], DIG_ADVICE);
+    assert_close(seen.sample[0], 0.4, 0.0);
+    assert_close(seen.sample[1], 2100, 0.0);
 }
 
 // A table dug in one way alone does not tell how a dig was made; it was matched with the plain one.
@@ -92,13 +89,12 @@ TEST(a_depth_that_was_not_told_is_not_a_number)
     const struct dig_fit_result result = { .track.any = true };
     assert_int_equal(dig_output_match(output, &result), DIG_OK);
     dig_output_destroy(output);
-    digsight_match_t *const m = last_match("plain.lcm", 1);
-    assert_true(isnan(m->depth) && isnan(m->attack_rad));
-    assert_int_equal(m->family, 0);
-    assert_string_equal(m->untold, "");
-    assert_close(m->matched_depth, 1.0, 0.0);
-    assert_close(m->matched_attack_rad, 0.0, 0.0);
-    digsight_match_t_destroy(m);
+    const struct seen seen = read_back("plain.lcm");
+    assert_true(isnan(seen.match.depth) && isnan(seen.match.attack_rad));
+    assert_int_equal(seen.match.family, 0);
+    assert_string_equal(seen.untold, "");
+    assert_close(seen.match.matched_depth, 1.0, 0.0);
+    assert_close(seen.match.matched_attack_rad, 0.0, 0.0);
 }
 
 TEST(a_prediction_carries_its_points_and_an_invalid_one_none)
@@ -124,22 +120,22 @@ TEST(a_prediction_carries_its_points_and_an_invalid_one_none)
     }
     assert_int_equal(dig_output_prediction(output, set(), &predictions), DIG_OK);
     dig_output_destroy(output);
-    digsight_prediction_t *m = last_prediction("predictions.lcm", 1);
-    assert_int_equal(m->valid, 1);
-    assert_string_equal(m->trajectory, "actual");
-    assert_int_equal(m->points, DIG_PREDICTION_POINTS);
-    assert_close(m->moment_Nm[63], 63.0, 0.0);
-    assert_close(m->sigma_Nm[63], -63.0, 0.0);
-    assert_true(m->expires_ns == 9);
-    assert_close(m->from_progress, 0.25, 0.0);
-    assert_close(m->peak_Nm, 64.0, 0.0);
-    assert_close(m->peak_sigma_Nm, 6.5, 0.0);
-    assert_close(m->energy_J, 32.0, 0.0);
-    assert_close(m->energy_sigma_J, 3.25, 0.0);
-    assert_close(m->sigma_force_x_N[63], 163.0, 0.0);
-    assert_close(m->sigma_force_z_N[63], 263.0, 0.0);
-    assert_close(m->depth, 1.15, 0.0);
-    assert_close(m->attack_rad, -0.03, 0.0);
+    struct seen seen = read_back("predictions.lcm");
+    assert_int_equal(seen.prediction.valid, 1);
+    assert_string_equal(seen.trajectory[2], "actual");
+    assert_int_equal(seen.prediction.points, DIG_PREDICTION_POINTS);
+    assert_close(seen.moment_Nm[63], 63.0, 0.0);
+    assert_close(seen.sigma_Nm[63], -63.0, 0.0);
+    assert_true(seen.prediction.expires_ns == 9);
+    assert_close(seen.prediction.from_progress, 0.25, 0.0);
+    assert_close(seen.prediction.peak_Nm, 64.0, 0.0);
+    assert_close(seen.prediction.peak_sigma_Nm, 6.5, 0.0);
+    assert_close(seen.prediction.energy_J, 32.0, 0.0);
+    assert_close(seen.prediction.energy_sigma_J, 3.25, 0.0);
+    assert_close(seen.sigma_force_x_N[63], 163.0, 0.0);
+    assert_close(seen.sigma_force_z_N[63], 263.0, 0.0);
+    assert_close(seen.prediction.depth, 1.15, 0.0);
+    assert_close(seen.prediction.attack_rad, -0.03, 0.0);
 
     struct dig_output *const again = begin("predictions.lcm");
     predictions.prediction.valid   = false;
@@ -147,15 +143,13 @@ TEST(a_prediction_carries_its_points_and_an_invalid_one_none)
     predictions.outside            = true;
     assert_int_equal(dig_output_prediction(again, set(), &predictions), DIG_OK);
     dig_output_destroy(again);
-    digsight_prediction_t_destroy(m);
-    m = last_prediction("predictions.lcm", 1);
-    assert_int_equal(m->valid, 0);
-    assert_int_equal(m->points, 0);
-    assert_true(isnan(m->depth) && isnan(m->attack_rad));
-    assert_string_equal(m->reason, "off the table");
-    assert_int_equal(m->outside, 1);
-    assert_string_equal(m->trajectory, "");
-    digsight_prediction_t_destroy(m);
+    seen = read_back("predictions.lcm");
+    assert_int_equal(seen.prediction.valid, 0);
+    assert_int_equal(seen.prediction.points, 0);
+    assert_true(isnan(seen.prediction.depth) && isnan(seen.prediction.attack_rad));
+    assert_string_equal(seen.text[0], "off the table");
+    assert_int_equal(seen.prediction.outside, 1);
+    assert_string_equal(seen.trajectory[2], "");
 }
 
 TESTS_WITH(scratch_setup, scratch_teardown)
