@@ -1,6 +1,6 @@
 // Writes an identity: one half of files/identity_json.h.
 
-#include "core/text.h"
+#include "core/markup.h"
 #include "core/units.h"
 #include "files/identity_json.h"
 
@@ -10,20 +10,11 @@
 // Depths, and attacks in rad, nearer than this are one.
 static const double alike = 1e-9;
 
-static void put_gravel(FILE *const to, const struct dig_gravel *const g)
-{
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "{" : ", ", dig_axis_name((enum dig_axis)a),
-                      g->value[a]);
-    }
-    (void)fputs("}", to);
-}
-
 static void put_named(FILE *const to, const char *const name, const struct dig_gravel *const g)
 {
-    (void)fprintf(to, "\"%s\": ", name);
-    put_gravel(to, g);
-    (void)fputs(",\n ", to);
+    dig_json_put(to, "%s: {", name);
+    dig_json_gravel(to, g);
+    (void)fputs("},\n ", to);
 }
 
 // Behind what stands before, on a line of its own.
@@ -57,9 +48,8 @@ static void put_approach(FILE *const to, const char *const prefix,
 static void put_dig(FILE *const to, const struct dig_identity_dig *const named)
 {
     const struct dig_observation *const dig = &named->seen;
-    (void)fputs("{\"trajectory\": ", to);
-    dig_text_put_json(to, named->trajectory);
-    (void)fprintf(to, ", \"first\": %.9g, \"last\": %.9g", dig->first, dig->last);
+    dig_json_put(to, "{\"trajectory\": %s, \"first\": %.9g, \"last\": %.9g", named->trajectory,
+                 dig->first, dig->last);
     if (!dig_approach_is_plain(&dig->approach)) {
         (void)fputs(", ", to);
         put_approach(to, "", &dig->approach);
@@ -93,10 +83,8 @@ void dig_identity_write(FILE *const to, const struct dig_identity *const identit
 {
     assert(to != NULL && identity != NULL);
     const struct dig_match *const match = &identity->match;
-    (void)fprintf(to, "{\"scene_hash\": \"%s\",\n \"trajectory\": ", identity->scene_hash);
-    dig_text_put_json(to, identity->trajectory);
-    (void)fprintf(to, ", \"digs\": %zu, \"forces\": %s,\n ", match->digs,
-                  match->forces ? "true" : "false");
+    dig_json_put(to, "{\"scene_hash\": %s,\n \"trajectory\": %s, \"digs\": %zu, \"forces\": %i,\n ",
+                 identity->scene_hash, identity->trajectory, match->digs, match->forces);
     put_made(to, identity);
     put_named(to, "gravel", &match->gravel);
     put_named(to, "mean", &match->mean);
@@ -105,16 +93,17 @@ void dig_identity_write(FILE *const to, const struct dig_identity *const identit
     put_named(to, "nearest", &identity->nearest);
     if (match->weighted >= 0) {
         put_named(to, "weighted_nearest", &identity->weighted_nearest);
-        (void)fprintf(to, "\"weighted_distance\": %.9g, ", match->weighted_distance);
+        dig_json_put(to, "\"weighted_distance\": %.9g, ", match->weighted_distance);
     }
-    (void)fprintf(to,
-                  "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
-                  "\"outside\": %s, \"family\": %s,\n \"samples\": [",
-                  match->distance, match->nearest_distance, match->noise_floor,
-                  match->outside ? "true" : "false", identity->family ? "true" : "false");
+    dig_json_put(to,
+                 "\"distance\": %.9g, \"nearest_distance\": %.9g, \"noise_floor\": %.9g,\n "
+                 "\"outside\": %i, \"family\": %i,\n \"samples\": [",
+                 match->distance, match->nearest_distance, match->noise_floor, match->outside,
+                 identity->family);
     for (size_t i = 0; i < match->samples; i++) {
-        (void)fputs(i == 0 ? "" : ",\n  ", to);
-        put_gravel(to, &match->sample[i]);
+        (void)fputs(i == 0 ? "{" : ",\n  {", to);
+        dig_json_gravel(to, &match->sample[i]);
+        (void)fputs("}", to);
     }
     (void)fputs(identity->recorded > 0 ? "],\n \"recorded\": [" : "]", to);
     for (size_t i = 0; i < identity->recorded; i++) {

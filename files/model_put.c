@@ -1,5 +1,6 @@
 // Writes a model: one half of files/model_json.h.
 
+#include "core/markup.h"
 #include "core/text.h"
 #include "files/model_json.h"
 #include "files/text/whole.h"
@@ -24,38 +25,34 @@ static void put_text(FILE *const to, const char *const key, const char *const te
             *c = '?';
         }
     }
-    (void)fprintf(to, "\"%s\": ", key);
-    dig_text_put_json(to, clean);
-    (void)fputs(",\n ", to);
+    dig_json_put(to, "%s: %s,\n ", key, clean);
 }
 
 static void put_gravel(FILE *const to, const char *const key, const struct dig_gravel *const g)
 {
-    (void)fprintf(to, "\"%s\": ", key);
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(to, "%s\"%s\": %.9g", a == 0 ? "{" : ", ", dig_axis_name((enum dig_axis)a),
-                      finite(g->value[a]));
-    }
+    dig_json_put(to, "%s: {", key);
+    dig_json_gravel(to, &(const struct dig_gravel){
+                            { finite(g->value[0]), finite(g->value[1]), finite(g->value[2]) } });
     (void)fputs("},\n ", to);
 }
 
 static void put_number(FILE *const to, const char *const key, const double value)
 {
     if (isfinite(value)) {
-        (void)fprintf(to, "\"%s\": %.9g,\n ", key, value);
+        dig_json_put(to, "%s: %.9g,\n ", key, value);
     }
 }
 
 static void put_effect(FILE *const to, const struct dig_model_effect *const effect)
 {
-    (void)fprintf(to, "{\"name\": \"%s\", \"probability\": %.4g, \"parameters\": [",
-                  dig_effect_name(effect->effect), finite(effect->probability));
+    dig_json_put(to, "{\"name\": %s, \"probability\": %.4g, \"parameters\": [",
+                 dig_effect_name(effect->effect), finite(effect->probability));
     for (size_t p = 0; p < effect->parameters; p++) {
         const struct dig_model_parameter *const parameter = &effect->parameter[p];
-        (void)fprintf(to, "%s\n   {\"name\": ", p == 0 ? "" : ",");
-        dig_text_put_json(to, parameter->name);
-        (void)fprintf(to, ", \"value\": %.9g, \"low\": %.9g, \"high\": %.9g}",
-                      finite(parameter->value), finite(parameter->low), finite(parameter->high));
+        (void)fputs(p == 0 ? "\n   " : ",\n   ", to);
+        dig_json_put(to, "{\"name\": %s, \"value\": %.9g, \"low\": %.9g, \"high\": %.9g}",
+                     parameter->name, finite(parameter->value), finite(parameter->low),
+                     finite(parameter->high));
     }
     (void)fputs("]}", to);
 }
@@ -88,10 +85,11 @@ static void put_unlisted(FILE *const to, const struct dig_model_unlisted *const 
             if (!(most > 0.0)) {
                 continue;
             }
-            (void)fprintf(to, "%s\n  {\"trajectory\": %d, \"channel\": \"%s\", \"share\": [",
-                          first ? "" : ",", t, dig_channel_name((enum dig_channel)c));
+            (void)fputs(first ? "\n  " : ",\n  ", to);
+            dig_json_put(to, "{\"trajectory\": %d, \"channel\": %s, \"share\": [", t,
+                         dig_channel_name((enum dig_channel)c));
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                (void)fprintf(to, "%s%.6g", k == 0 ? "" : ", ", finite((double)share[k]));
+                dig_json_put(to, k == 0 ? "%g" : ", %g", finite((double)share[k]));
             }
             (void)fputs("]}", to);
             first = false;

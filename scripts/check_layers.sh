@@ -23,7 +23,7 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 # may. All other headers are private to their room; a program's parts in tools/NAME are private to tools/NAME.c.
 rooms='
 core                   approach bed bed_plan chance command_line contact curve did_you_mean effect entry_set error
-                       geometry gravel_match ground linkage log_normal machine model name observation outline part process
+                       geometry gravel_match ground linkage log_normal machine markup model name observation outline part process
                        recording regular sample scene sha256 shell similar sort status streams table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml yaml_schema
@@ -60,7 +60,7 @@ closed_loop/search     | cross_validation portmanteau search search_work unliste
 closed_loop/accuracy   coverage score | decision effect_size judge trend
 closed_loop/verdict    trace | residuals tell_apart
 closed_loop/design     design
-closed_loop/report     design_report html json machine_check_report plot report trace_report
+closed_loop/report     design_report html machine_check_report plot report trace_report
 firmware_host/threads  | handoff log_limit notify rt
 firmware_host/bus      | frame_watch input reading register_plan signal_map stuck
 firmware_host/config   load_model | config describe load

@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 # NAME|FILE|what sed does to it|the test that must fail
 mends='
 markup in a page is escaped|closed_loop/report/html.c|s/case .<.:.*$//|firmware_host/test_hostile_texts
-also what a format puts there|closed_loop/report/markup.c|s/markup->text(to, \(va_arg.*, const char \*)\));/(void)fputs(\1, to);/|closed_loop/test_trace_report
+also what a format puts there|core/markup.c|s/markup->text(to, \(va_arg.*, const char \*)\));/(void)fputs(\1, to);/|closed_loop/test_trace_report
 text of a picture is escaped, and no command|closed_loop/report/plot.c|s/^    dig_html_text(to, text);/    (void)fputs(text, to);/|closed_loop/test_plot
 a start-up file of gnuplot is not run|closed_loop/report/plot.c|s/"-d"/"--"/|closed_loop/test_plot
 a word of a shell line is quoted|core/shell.c|s/if (word.0. != .*$/if (true) {/|core/test_shell

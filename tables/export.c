@@ -1,6 +1,6 @@
 #include "tables/export.h"
 
-#include "core/text.h"
+#include "core/markup.h"
 #include "core/units.h"
 #include "tables/listed.h"
 
@@ -175,29 +175,21 @@ void dig_export_list(const struct dig_curve_set *const set,
     }
 }
 
-static void put_json_gravel(const struct dig_gravel *const gravel, FILE *const file)
-{
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)fprintf(file, "%s\"%s\": %.9g", a == 0 ? "" : ", ", dig_axis_name((enum dig_axis)a),
-                      gravel->value[a]);
-    }
-}
-
-static void put_json_approach(const struct dig_approach *const approach, FILE *const file)
-{
-    (void)fprintf(file, ", \"depth\": %.9g, \"attack_deg\": %.9g", approach->depth,
-                  degrees(approach->attack_rad));
-}
-
 static void put_json_scene(const struct dig_curve_set *const set, FILE *const file)
 {
-    (void)fputs("\"scene\": {\"name\": ", file);
-    dig_text_put_json(file, set->scene_name);
-    (void)fprintf(file,
-                  ", \"hash\": \"%s\", \"tooth_m\": %.9g, \"bucket_width_m\": %.9g, "
-                  "\"young_Pa\": %.9g, \"smooth_half_s\": %.9g}",
-                  set->scene_hash, set->tooth_m, set->bucket_width_m, set->young_Pa,
-                  set->smooth_half_s);
+    dig_json_put(file,
+                 "{\"scene\": {\"name\": %s, \"hash\": %s, \"tooth_m\": %.9g, "
+                 "\"bucket_width_m\": %.9g, \"young_Pa\": %.9g, \"smooth_half_s\": %.9g}",
+                 set->scene_name, set->scene_hash, set->tooth_m, set->bucket_width_m, set->young_Pa,
+                 set->smooth_half_s);
+}
+
+static void put_json_entry(const size_t entry, const struct dig_listed *const one, FILE *const file)
+{
+    dig_json_put(file, "\"entry\": %zu, ", entry);
+    dig_json_gravel(file, &one->gravel);
+    dig_json_put(file, ", \"depth\": %.9g, \"attack_deg\": %.9g", one->approach.depth,
+                 degrees(one->approach.attack_rad));
 }
 
 static void put_json_packings(const struct dig_curve_set *const set, const int packings[],
@@ -205,9 +197,7 @@ static void put_json_packings(const struct dig_curve_set *const set, const int p
 {
     (void)fputs(", \"packings\": {", file);
     for (size_t t = 0; t < set->trajectories; t++) {
-        (void)fputs(t == 0 ? "" : ", ", file);
-        dig_text_put_json(file, set->trajectory[t].name);
-        (void)fprintf(file, ": %d", packings[t]);
+        dig_json_put(file, t == 0 ? "%s: %d" : ", %s: %d", set->trajectory[t].name, packings[t]);
     }
     (void)fputs("}}", file);
 }
@@ -215,26 +205,25 @@ static void put_json_packings(const struct dig_curve_set *const set, const int p
 void dig_export_list_json(const struct dig_curve_set *const set,
                           const struct dig_entry_set *const effects, FILE *const file)
 {
-    (void)fputc('{', file);
     put_json_scene(set, file);
     (void)fputs(",\n \"trajectories\": [", file);
     for (size_t t = 0; t < set->trajectories; t++) {
-        (void)fputs(t == 0 ? "" : ", ", file);
-        dig_text_put_json(file, set->trajectory[t].name);
+        dig_json_put(file, t == 0 ? "%s" : ", %s", set->trajectory[t].name);
     }
     (void)fputs("],\n \"entries\": [", file);
     for (size_t e = 0; e < dig_listed_count(set); e++) {
         const struct dig_listed one = dig_listed_at(set, e, 0);
-        (void)fprintf(file, "%s\n  {\"entry\": %zu, ", e == 0 ? "" : ",", e);
-        put_json_gravel(&one.gravel, file);
-        put_json_approach(&one.approach, file);
+        (void)fputs(e == 0 ? "\n  {" : ",\n  {", file);
+        put_json_entry(e, &one, file);
         put_json_packings(set, packings_of(set, e), file);
     }
     (void)fputs("\n ],\n \"effects\": [", file);
     for (size_t e = 0; e < effects->entries; e++) {
-        (void)fprintf(file, "%s\n  {\"effect\": \"%s\", \"magnitude\": %.9g, ", e == 0 ? "" : ",",
-                      dig_effect_name(effects->entry[e].effect), effects->entry[e].magnitude);
-        put_json_gravel(&effects->entry[e].gravel, file);
+        const struct dig_entry *const x = &effects->entry[e];
+        (void)fputs(e == 0 ? "\n  {" : ",\n  {", file);
+        dig_json_put(file, "\"effect\": %s, \"magnitude\": %.9g, ", dig_effect_name(x->effect),
+                     x->magnitude);
+        dig_json_gravel(file, &x->gravel);
         put_json_packings(set, effects->packings + e * set->trajectories, file);
     }
     (void)fputs(effects->entries > 0 ? "\n ]}\n" : "]}\n", file);
@@ -251,17 +240,12 @@ void dig_export_curve_csv(const struct dig_curve_set *const set, const size_t en
     }
 }
 
-static void put_json_array(const char *const name, const float value[const DIG_CURVE_POINTS],
-                           FILE *const file)
+static void put_json_numbers(const char *const name, const double value[const DIG_CURVE_POINTS],
+                             FILE *const file)
 {
-    (void)fprintf(file, ",\n \"%s\": [", name);
+    dig_json_put(file, ",\n %s: [", name);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fputs(k == 0 ? "" : ", ", file);
-        if (isnan(value[k])) {
-            (void)fputs("null", file);
-        } else {
-            (void)fprintf(file, "%.9g", (double)value[k]);
-        }
+        dig_json_put(file, k == 0 ? "%.9g" : ", %.9g", value[k]);
     }
     (void)fputc(']', file);
 }
@@ -269,29 +253,27 @@ static void put_json_array(const char *const name, const float value[const DIG_C
 void dig_export_curve_json(const struct dig_curve_set *const set, const size_t entry,
                            const size_t trajectory, FILE *const file)
 {
-    const struct dig_listed one = dig_listed_at(set, entry, trajectory);
-    (void)fputc('{', file);
-    put_json_scene(set, file);
-    (void)fprintf(file, ",\n \"entry\": %zu, ", entry);
-    put_json_gravel(&one.gravel, file);
-    put_json_approach(&one.approach, file);
-    (void)fputs(", \"trajectory\": ", file);
-    dig_text_put_json(file, one.trajectory.name);
-    (void)fprintf(file, ", \"packings\": %d,\n \"progress\": [", one.packings);
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ", progress_of(k));
-    }
-    (void)fputs("],\n \"t_s\": [", file);
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        (void)fprintf(file, "%s%.9g", k == 0 ? "" : ", ",
-                      time_of(&one.trajectory, set->tooth_m, k));
-    }
-    (void)fputc(']', file);
     static const char *const sd_name[DIG_CHANNELS] = { "My_sd_Nm", "Fx_sd_N", "Fz_sd_N",
                                                        "carried_sd_kg" };
+    const struct dig_listed  one                   = dig_listed_at(set, entry, trajectory);
+    double                   value[2][DIG_CURVE_POINTS];
+    put_json_scene(set, file);
+    (void)fputs(",\n ", file);
+    put_json_entry(entry, &one, file);
+    dig_json_put(file, ", \"trajectory\": %s, \"packings\": %d", one.trajectory.name, one.packings);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        value[0][k] = progress_of(k);
+        value[1][k] = time_of(&one.trajectory, set->tooth_m, k);
+    }
+    put_json_numbers("progress", value[0], file);
+    put_json_numbers("t_s", value[1], file);
     for (size_t c = 0; c < DIG_CHANNELS; c++) {
-        put_json_array(dig_channel_name((enum dig_channel)c), one.curve->mean[c], file);
-        put_json_array(sd_name[c], one.curve->sd[c], file);
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            value[0][k] = (double)one.curve->mean[c][k];
+            value[1][k] = (double)one.curve->sd[c][k];
+        }
+        put_json_numbers(dig_channel_name((enum dig_channel)c), value[0], file);
+        put_json_numbers(sd_name[c], value[1], file);
     }
     (void)fputs("}\n", file);
 }

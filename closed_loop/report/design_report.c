@@ -1,6 +1,6 @@
 #include "closed_loop/report/design_report.h"
 
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 
 #include <assert.h>
 

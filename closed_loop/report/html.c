@@ -1,6 +1,6 @@
 #include "closed_loop/report/html.h"
 
-#include "closed_loop/report/markup.h"
+#include "core/markup.h"
 #include "core/text.h"
 
 #include <assert.h>

@@ -10,7 +10,7 @@
 void dig_html_text(FILE *to, const char *text);
 
 /// A piece of a page by its format: %s goes through dig_html_text(), a number that is not finite is
-/// a dash. What else there is: closed_loop/report/markup.h.
+/// a dash. What else there is: core/markup.h.
 __attribute__((format(printf, 2, 3))) void dig_html_put(FILE *to, const char *format, ...);
 
 /// As dig_html_text(), without the folders of files that are named in it: they are somebody's

@@ -1,6 +1,6 @@
 #include "closed_loop/report/machine_check_report.h"
 
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 #include "core/sample.h"
 #include "core/text.h"
 

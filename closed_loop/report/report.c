@@ -1,8 +1,8 @@
 #include "closed_loop/report/report.h"
 
 #include "closed_loop/report/html.h"
-#include "closed_loop/report/json.h"
 #include "closed_loop/report/plot.h"
+#include "core/markup.h"
 #include "core/text.h"
 
 #include <assert.h>

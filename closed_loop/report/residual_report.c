@@ -1,6 +1,6 @@
 #include "closed_loop/report/residual_report.h"
 
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 #include "core/units.h"
 
 #include <assert.h>

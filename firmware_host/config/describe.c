@@ -1,7 +1,7 @@
 #include "firmware_host/config/describe.h"
 
+#include "core/markup.h"
 #include "core/table_step.h"
-#include "core/text.h"
 
 #include <assert.h>
 #include <string.h>
@@ -58,38 +58,32 @@ void dig_describe(const struct dig_loaded *const l, const struct dig_curve_set *
     }
 }
 
-static void put(FILE *const file, const char *const before, const char *const text)
-{
-    (void)fputs(before, file);
-    dig_text_put_json(file, text);
-}
-
 void dig_describe_json(const struct dig_loaded *const l, const struct dig_curve_set *const set,
                        const char *const input, FILE *const file)
 {
     assert(l != NULL && set != NULL && input != NULL && file != NULL);
-    put(file, "{\"table\": {\"path\": ", l->config.table.text);
-    put(file, ", \"scene\": ", set->scene_name);
-    put(file, ", \"scene_hash\": ", set->scene_hash);
-    (void)fprintf(file, ", \"gravels\": %zu,\n  \"digs\": [", set->entries);
+    dig_json_put(file,
+                 "{\"table\": {\"path\": %s, \"scene\": %s, \"scene_hash\": %s, \"gravels\": %zu,\n"
+                 "  \"digs\": [",
+                 l->config.table.text, set->scene_name, set->scene_hash, set->entries);
     for (size_t t = 0; t < set->trajectories; t++) {
-        put(file, t == 0 ? "{\"name\": " : ", {\"name\": ", set->trajectory[t].name);
-        (void)fprintf(file, ", \"identifies\": %s}",
-                      dig_config_identifies(&l->config, set->trajectory[t].name) ? "true"
-                                                                                 : "false");
+        const char *const name = set->trajectory[t].name;
+        (void)fputs(t == 0 ? "" : ", ", file);
+        dig_json_put(file, "{\"name\": %s, \"identifies\": %i}", name,
+                     dig_config_identifies(&l->config, name));
     }
-    put(file, "]},\n \"machine\": {\"name\": ", l->machine.name);
-    (void)fprintf(file, ", \"bucket_m\": %.9g, \"scale\": %.9g},\n",
-                  l->machine.link[DIG_JOINT_BUCKET].length_m, scale_of(l, set));
-    put(file, " \"input\": ", input);
-    (void)fprintf(file, ", \"tick_Hz\": %.9g", 1.0 / l->config.tick_s);
-    put(file, ", \"lcm_url\": ", l->config.lcm_url);
-    (void)fputs(",\n \"not_measured\": [", file);
+    dig_json_put(file,
+                 "]},\n \"machine\": {\"name\": %s, \"bucket_m\": %.9g, \"scale\": %.9g},\n"
+                 " \"input\": %s, \"tick_Hz\": %.9g, \"lcm_url\": %s,\n \"not_measured\": [",
+                 l->machine.name, l->machine.link[DIG_JOINT_BUCKET].length_m, scale_of(l, set),
+                 input, 1.0 / l->config.tick_s, l->config.lcm_url);
     const enum dig_sensing sensing = dig_signals_sensing(l->measured);
     const char            *comma   = "";
     for (int i = 0; i < DIG_SIGNALS; i++) {
-        if (!l->measured[i] && dig_signal_is_needed(sensing, (enum dig_signal)i)) {
-            put(file, comma, dig_signal_name((enum dig_signal)i));
+        const enum dig_signal signal = (enum dig_signal)i;
+        if (!l->measured[i] && dig_signal_is_needed(sensing, signal)) {
+            (void)fputs(comma, file);
+            dig_json_put(file, "%s", dig_signal_name(signal));
             comma = ", ";
         }
     }

@@ -1,4 +1,4 @@
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 #include "core/units.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/match.h"

@@ -1,6 +1,6 @@
 #include "tools/digloop/prediction_error.h"
 
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 #include "estimator/predict/peak_energy.h"
 #include "tools/digloop/as_dug.h"
 

@@ -1,4 +1,4 @@
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 #include "core/text.h"
 #include "tools/digreport/shift_page.h"
 

@@ -1,6 +1,6 @@
 // digtable status.
 
-#include "closed_loop/report/json.h"
+#include "core/markup.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/job_state.h"
 #include "tools/digtable/progress.h"

@@ -1,4 +1,6 @@
-#include "closed_loop/report/markup.h"
+#include "core/markup.h"
+
+#include "core/text.h"
 
 #include <assert.h>
 #include <math.h>
@@ -49,4 +51,21 @@ void dig_markup_put(FILE *const to, const struct dig_markup *const markup, const
         format = *format == '%' ? put_value(to, markup, format + 1, &left) : format;
     }
     va_end(left);
+}
+
+void dig_json_put(FILE *const to, const char *const format, ...)
+{
+    static const struct dig_markup json = { dig_text_put_json, "null" };
+    va_list                        values;
+    va_start(values, format);
+    dig_markup_put(to, &json, format, values);
+    va_end(values);
+}
+
+void dig_json_gravel(FILE *const to, const struct dig_gravel *const gravel)
+{
+    assert(gravel != NULL);
+    dig_json_put(to, "\"friction\": %.9g, \"rolling\": %.9g, \"density_kgpm3\": %.9g",
+                 gravel->value[DIG_AXIS_FRICTION], gravel->value[DIG_AXIS_ROLLING],
+                 gravel->value[DIG_AXIS_DENSITY_kgpm3]);
 }
