@@ -88,15 +88,19 @@ static enum dig_status convert_recording(const char *const yaml, const size_t i,
     return status;
 }
 
-static enum dig_status convert(const char *const yaml, struct dig_campaign *const campaign,
-                               struct dig_error *const error)
+static enum dig_status take(const char *const yaml, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
-    enum dig_status status = resolve(yaml, "scene", campaign->scene, error);
+    struct dig_campaign *const campaign = loaded;
+    enum dig_status            status   = resolve(yaml, "scene", campaign->scene, error);
     if (status == DIG_OK && campaign->machine[0] != '\0') {
         status = resolve(yaml, "machine", campaign->machine, error);
     }
     for (size_t i = 0; status == DIG_OK && i < campaign->recordings; i++) {
         status = convert_recording(yaml, i, &campaign->recording[i], error);
+    }
+    if (status == DIG_OK) {
+        *(struct dig_campaign *)into = *campaign;
     }
     return status;
 }
@@ -110,23 +114,12 @@ bool dig_campaign_is(const char *const path)
 enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign *const campaign,
                                   struct dig_error *const error)
 {
-    assert(folder != NULL && campaign != NULL);
+    assert(folder != NULL);
 
     char      yaml[DIG_CAMPAIGN_PATH];
     const int length = snprintf(yaml, sizeof yaml, "%s/campaign.yaml", folder);
     if (length < 0 || (size_t)length >= sizeof yaml) {
         return dig_error_set(error, DIG_EINVAL, "expected a shorter path than %s", folder);
     }
-
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(yaml, &schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = convert(yaml, data, error);
-    if (status == DIG_OK) {
-        *campaign = *(const struct dig_campaign *)data;
-    }
-    dig_yaml_free(&schema, data);
-    return status;
+    return dig_yaml_read(yaml, &schema, take, campaign, error);
 }

@@ -94,28 +94,26 @@ static enum dig_status check(const char *const path, const struct dig_curve_map 
     return status;
 }
 
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
+{
+    const struct dig_curve_map *const text = loaded;
+    struct dig_curve_map              map  = *text;
+    for (int f = 0; f < DIG_MAP_FIELDS; f++) {
+        map.field[f].factor = fabs(text->field[f].factor) > 0.0 ? text->field[f].factor : 1.0;
+    }
+    const enum dig_status status =
+        dig_path_beside(path, text->scene, sizeof map.scene, map.scene)
+            ? check(path, &map, error)
+            : dig_yaml_refuse(path, error, "scene: expected a shorter path");
+    if (status == DIG_OK) {
+        *(struct dig_curve_map *)into = map;
+    }
+    return status;
+}
+
 enum dig_status dig_curve_map_read(const char *const path, struct dig_curve_map *const map,
                                    struct dig_error *const error)
 {
-    assert(path != NULL && map != NULL);
-
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_curve_map loaded = *(const struct dig_curve_map *)data;
-    for (int f = 0; f < DIG_MAP_FIELDS; f++) {
-        const double given     = loaded.field[f].factor;
-        loaded.field[f].factor = fabs(given) > 0.0 ? given : 1.0;
-    }
-    const bool fits = dig_path_beside(path, ((const struct dig_curve_map *)data)->scene,
-                                      sizeof loaded.scene, loaded.scene);
-    dig_yaml_free(&schema, data);
-    status = fits ? check(path, &loaded, error)
-                  : dig_yaml_refuse(path, error, "scene: expected a shorter path");
-    if (status == DIG_OK) {
-        *map = loaded;
-    }
-    return status;
+    return dig_yaml_read(path, &schema, take, map, error);
 }

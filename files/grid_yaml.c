@@ -168,42 +168,35 @@ static void convert_approaches(const struct grid_text *const text, struct dig_gr
     }
 }
 
-static void convert(const struct grid_text *const text, struct dig_grid *const grid)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
-    *grid = text->grid;
-    for (size_t i = 0; i < grid->points; i++) {
-        struct dig_grid_point *const p = &grid->point[i];
+    const struct grid_text *const text = loaded;
+    struct dig_grid               grid = text->grid;
+    for (size_t i = 0; i < grid.points; i++) {
+        struct dig_grid_point *const p = &grid.point[i];
         p->states = fabs(p->approach.depth) > 0.0 || fabs(p->approach.attack_rad) > 0.0;
         p->approach.attack_rad *= DIG_RAD_PER_DEG;
         p->approach = dig_approach_normalized(&p->approach);
     }
-    convert_approaches(text, grid);
+    convert_approaches(text, &grid);
+    enum dig_status status = convert_effects(path, text, &grid, error);
+    if (status == DIG_OK) {
+        status = check_approaches(path, text, error);
+    }
+    if (status == DIG_OK) {
+        status = dig_grid_check(path, &grid, error);
+    }
+    if (status == DIG_OK) {
+        *(struct dig_grid *)into = grid;
+    }
+    return status;
 }
 
 enum dig_status dig_grid_read(const char *const path, struct dig_grid *const grid,
                               struct dig_error *const error)
 {
-    assert(path != NULL && grid != NULL);
-
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_grid loaded;
-    convert(data, &loaded);
-    status = convert_effects(path, data, &loaded, error);
-    if (status == DIG_OK) {
-        status = check_approaches(path, data, error);
-    }
-    dig_yaml_free(&schema, data);
-    if (status == DIG_OK) {
-        status = dig_grid_check(path, &loaded, error);
-    }
-    if (status == DIG_OK) {
-        *grid = loaded;
-    }
-    return status;
+    return dig_yaml_read(path, &schema, take, grid, error);
 }
 
 // "simpleA, simpleB, actual"

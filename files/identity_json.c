@@ -5,7 +5,6 @@
 #include "files/yaml/yaml.h"
 #include "files/yaml/yaml_schema.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -151,19 +150,12 @@ static enum dig_status take_approach(const char *const path, const char *const k
                      key);
 }
 
-enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
-                                  struct dig_error *const error)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
-    assert(path != NULL && identity != NULL);
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-
-    const struct identity_text *const text = data;
-    struct dig_identity               read = text->identity;
-    status                                 = take_approach(path, "depth", &read.made, error);
+    const struct identity_text *const text   = loaded;
+    struct dig_identity               read   = text->identity;
+    enum dig_status                   status = take_approach(path, "depth", &read.made, error);
     if (status == DIG_OK) {
         status = take_approach(path, "matched_depth", &read.matched, error);
     }
@@ -212,8 +204,13 @@ enum dig_status dig_identity_read(const char *const path, struct dig_identity *c
             path, error, "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
     }
     if (status == DIG_OK) {
-        *identity = read;
+        *(struct dig_identity *)into = read;
     }
-    dig_yaml_free(&schema, data);
     return status;
+}
+
+enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,
+                                  struct dig_error *const error)
+{
+    return dig_yaml_read(path, &schema, take, identity, error);
 }

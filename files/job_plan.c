@@ -26,9 +26,10 @@ static const cyaml_schema_field_t fields[] = {
 
 static const cyaml_schema_value_t schema = FILE_OF(dig_job_plan, fields);
 
-static enum dig_status check(const char *const path, const struct dig_job_plan *const plan,
-                             struct dig_error *const error)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
+    const struct dig_job_plan *const plan = loaded;
     // It stands in command lines and is what a queue is asked for.
     if (!dig_name_ok(plan->job)) {
         return dig_yaml_refuse(path, error, "job: \"%s\", expected " DIG_NAME_RULE, plan->job);
@@ -45,24 +46,14 @@ static enum dig_status check(const char *const path, const struct dig_job_plan *
         return dig_yaml_refuse(path, error, "trajectories: %zu, expected 1 to %d",
                                plan->trajectories, DIG_TRAJECTORY_MAX);
     }
+    *(struct dig_job_plan *)into = *plan;
     return DIG_OK;
 }
 
 enum dig_status dig_job_plan_read(const char *const path, struct dig_job_plan *const plan,
                                   struct dig_error *const error)
 {
-    assert(path != NULL && plan != NULL);
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    status = check(path, data, error);
-    if (status == DIG_OK) {
-        *plan = *(const struct dig_job_plan *)data;
-    }
-    dig_yaml_free(&schema, data);
-    return status;
+    return dig_yaml_read(path, &schema, take, plan, error);
 }
 
 enum dig_status dig_job_plan_write(const char *const path, const struct dig_job_plan *const plan,

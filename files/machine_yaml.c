@@ -5,8 +5,6 @@
 #include "files/yaml/yaml.h"
 #include "files/yaml/yaml_schema.h"
 
-#include <assert.h>
-
 // A machine of either kind, angles still in degrees; what the other kind has stays 0.
 struct machine_text {
     struct dig_machine machine;
@@ -155,36 +153,33 @@ static const cyaml_schema_field_t machine_fields[] = {
 };
 static const cyaml_schema_value_t schema = FILE_OF(machine_text, machine_fields);
 
-enum dig_status dig_machine_read(const char *const path, struct dig_machine *const machine,
-                                 struct dig_error *const error)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
-    assert(path != NULL && machine != NULL);
-
-    const bool                        senses = dig_yaml_line(path, "force_sensor") > 0;
-    const cyaml_schema_value_t *const kind   = senses ? &rig_schema : &schema;
-    cyaml_data_t                     *data   = NULL;
-    enum dig_status                   status = dig_yaml_load(path, kind, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_machine loaded = ((const struct machine_text *)data)->machine;
+    struct dig_machine machine = ((const struct machine_text *)loaded)->machine;
     for (int j = 0; j < DIG_JOINTS; j++) {
-        loaded.link[j].min_rad *= DIG_RAD_PER_DEG;
-        loaded.link[j].max_rad *= DIG_RAD_PER_DEG;
+        machine.link[j].min_rad *= DIG_RAD_PER_DEG;
+        machine.link[j].max_rad *= DIG_RAD_PER_DEG;
     }
-    loaded.sensor.turn_rad *= DIG_RAD_PER_DEG;
-    loaded.sensor.fitted = senses;
+    machine.sensor.turn_rad *= DIG_RAD_PER_DEG;
+    machine.sensor.fitted = dig_yaml_line(path, "force_sensor") > 0;
     if (dig_yaml_line(path, "tolerance") <= 0) {
-        loaded.tolerance = senses ? machined : measured;
+        machine.tolerance = machine.sensor.fitted ? machined : measured;
     }
-    dig_yaml_free(kind, data);
 
-    struct dig_error found = { "" };
-    status                 = dig_machine_check(&loaded, &found);
-    status                 = status == DIG_OK ? dig_geometry_check(&loaded, &found) : status;
+    struct dig_error found  = { "" };
+    enum dig_status  status = dig_machine_check(&machine, &found);
+    status                  = status == DIG_OK ? dig_geometry_check(&machine, &found) : status;
     if (status != DIG_OK) {
         return dig_yaml_refuse_checked(path, status, &found, error);
     }
-    *machine = loaded;
+    *(struct dig_machine *)into = machine;
     return DIG_OK;
+}
+
+enum dig_status dig_machine_read(const char *const path, struct dig_machine *const machine,
+                                 struct dig_error *const error)
+{
+    const bool senses = dig_yaml_line(path, "force_sensor") > 0;
+    return dig_yaml_read(path, senses ? &rig_schema : &schema, take, machine, error);
 }

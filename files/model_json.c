@@ -4,7 +4,6 @@
 #include "files/yaml/yaml.h"
 #include "files/yaml/yaml_schema.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -178,9 +177,10 @@ static enum dig_status take_unlisted(const char *const path, const struct unlist
     return DIG_OK;
 }
 
-static enum dig_status take(const char *const path, const struct model_text *const text,
-                            struct dig_model *const model, struct dig_error *const error)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
+    const struct model_text *const text = loaded;
     if (text->version != 1) {
         return dig_yaml_refuse(path, error, "version: %u, expected 1", text->version);
     }
@@ -204,7 +204,7 @@ static enum dig_status take(const char *const path, const struct model_text *con
         status = take_unlisted(path, text->unlisted, &m.unlisted, error);
     }
     if (status == DIG_OK) {
-        *model = m;
+        *(struct dig_model *)into = m;
     }
     return status;
 }
@@ -212,12 +212,5 @@ static enum dig_status take(const char *const path, const struct model_text *con
 enum dig_status dig_model_read(const char *const path, struct dig_model *const model,
                                struct dig_error *const error)
 {
-    assert(path != NULL && model != NULL);
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
-    if (status == DIG_OK) {
-        status = take(path, data, model, error);
-        dig_yaml_free(&schema, data);
-    }
-    return status;
+    return dig_yaml_read(path, &schema, take, model, error);
 }

@@ -5,8 +5,6 @@
 #include "files/yaml/yaml.h"
 #include "files/yaml/yaml_schema.h"
 
-#include <assert.h>
-
 // A scene, angles still in degrees, beside what is put into it afterwards.
 struct scene_text {
     struct dig_scene      scene;
@@ -111,27 +109,25 @@ static struct dig_scene convert(const struct scene_text *const text)
     return scene;
 }
 
-enum dig_status dig_scene_read(const char *const path, struct dig_scene *const scene,
-                               struct dig_error *const error)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
-    assert(path != NULL && scene != NULL);
-
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    const struct scene_text *const text   = data;
-    struct dig_scene               loaded = convert(text);
+    const struct scene_text *const text   = loaded;
+    struct dig_scene               scene  = convert(text);
     struct dig_error               found  = { "" };
-    status                                = dig_bed_convert(&text->bed, &loaded.bed, &found);
-    dig_yaml_free(&schema, data);
+    enum dig_status                status = dig_bed_convert(&text->bed, &scene.bed, &found);
     if (status == DIG_OK) {
-        status = dig_scene_check(&loaded, &found);
+        status = dig_scene_check(&scene, &found);
     }
     if (status != DIG_OK) {
         return dig_yaml_refuse_checked(path, status, &found, error);
     }
-    *scene = loaded;
+    *(struct dig_scene *)into = scene;
     return DIG_OK;
+}
+
+enum dig_status dig_scene_read(const char *const path, struct dig_scene *const scene,
+                               struct dig_error *const error)
+{
+    return dig_yaml_read(path, &schema, take, scene, error);
 }

@@ -54,11 +54,9 @@ static enum dig_status load_text(const char *const path, const char *const text,
                          path, cyaml_strerror(err), log.text);
 }
 
-enum dig_status dig_yaml_load(const char *const path, const cyaml_schema_value_t *const schema,
-                              cyaml_data_t **const data, struct dig_error *const error)
+static enum dig_status load(const char *const path, const cyaml_schema_value_t *const schema,
+                            cyaml_data_t **const data, struct dig_error *const error)
 {
-    assert(path != NULL && schema != NULL && data != NULL);
-
     char           *text   = NULL;
     size_t          size   = 0;
     enum dig_status status = dig_file_read(path, &text, &size, error);
@@ -80,12 +78,20 @@ enum dig_status dig_yaml_load(const char *const path, const cyaml_schema_value_t
     return status;
 }
 
-void dig_yaml_free(const cyaml_schema_value_t *const schema, cyaml_data_t *const data)
+enum dig_status dig_yaml_read(const char *const path, const cyaml_schema_value_t *const schema,
+                              enum dig_status (*const take)(const char *, cyaml_data_t *, void *,
+                                                            struct dig_error *),
+                              void *const into, struct dig_error *const error)
 {
-    if (data != NULL) {
-        const cyaml_config_t config = { .mem_fn = cyaml_mem, .flags = CYAML_CFG_DEFAULT };
+    assert(path != NULL && schema != NULL && into != NULL);
+    const cyaml_config_t config = { .mem_fn = cyaml_mem, .flags = CYAML_CFG_DEFAULT };
+    cyaml_data_t        *data   = NULL;
+    enum dig_status      status = load(path, schema, &data, error);
+    if (status == DIG_OK) {
+        status = take(path, data, into, error);
         (void)cyaml_free(&config, schema, data, 0);
     }
+    return status;
 }
 
 // The line of the value at key, or of the deepest mapping on the way to it.

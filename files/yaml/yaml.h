@@ -7,13 +7,15 @@
 
 #include <cyaml/cyaml.h>
 
-/// Loads path by schema. Unknown keys, missing keys and values of the wrong type are refused;
-/// *error reads "FILE:LINE: KEY: what was found, expected …". *data is to be freed with
-/// dig_yaml_free().
-DIG_MUST_CHECK enum dig_status dig_yaml_load(const char *path, const cyaml_schema_value_t *schema,
-                                             cyaml_data_t **data, struct dig_error *error);
-
-void dig_yaml_free(const cyaml_schema_value_t *schema, cyaml_data_t *data);
+/// Loads path by schema and hands it to take(path, loaded, into, error), which may change what was
+/// loaded, and is to write *into on success only. Unknown keys, missing keys and values of the
+/// wrong type are refused; *error reads "FILE:LINE: KEY: what was found, expected …". Returns what
+/// take() does.
+DIG_MUST_CHECK enum dig_status
+dig_yaml_read(const char *path, const cyaml_schema_value_t *schema,
+              enum dig_status (*take)(const char *path, cyaml_data_t *loaded, void *into,
+                                      struct dig_error *error),
+              void *into, struct dig_error *error);
 
 /// The line on which the value at dotted key ("cylinders.boom.bore_m", "recordings[2].file")
 /// stands, or 0 when it is not there: so that a check made after loading can name the line too.

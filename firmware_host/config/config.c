@@ -247,39 +247,33 @@ static enum dig_status take_input(const struct work *const work)
                : status;
 }
 
-static enum dig_status take(const struct work *const work)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
 {
-    struct dig_config *const       config = work->config;
-    const struct dig_config *const given  = &work->text->config;
+    struct dig_config              config = defaults();
+    const struct work              work   = { path, loaded, &config, error };
+    const struct dig_config *const given  = &work.text->config;
 
-    config->kind                  = given->kind;
-    config->identify_trajectories = given->identify_trajectories;
-    memcpy(config->identify_trajectory, given->identify_trajectory,
-           sizeof config->identify_trajectory);
-    if (is_given(work, "realtime.lock_memory")) {
-        config->realtime.lock_memory = given->realtime.lock_memory;
+    config.kind                  = given->kind;
+    config.identify_trajectories = given->identify_trajectories;
+    memcpy(config.identify_trajectory, given->identify_trajectory,
+           sizeof config.identify_trajectory);
+    if (is_given(&work, "realtime.lock_memory")) {
+        config.realtime.lock_memory = given->realtime.lock_memory;
     }
-    enum dig_status status = take_numbers(work);
-    status                 = status == DIG_OK ? take_texts(work) : status;
-    return status == DIG_OK ? take_input(work) : status;
+    enum dig_status status = take_numbers(&work);
+    status                 = status == DIG_OK ? take_texts(&work) : status;
+    status                 = status == DIG_OK ? take_input(&work) : status;
+    if (status == DIG_OK) {
+        *(struct dig_config *)into = config;
+    }
+    return status;
 }
 
 enum dig_status dig_config_read(const char *const path, struct dig_config *const config,
                                 struct dig_error *const error)
 {
-    assert(path != NULL && config != NULL);
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &dig_config_schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_config loaded = defaults();
-    status                   = take(&(const struct work){ path, data, &loaded, error });
-    dig_yaml_free(&dig_config_schema, data);
-    if (status == DIG_OK) {
-        *config = loaded;
-    }
-    return status;
+    return dig_yaml_read(path, &dig_config_schema, take, config, error);
 }
 
 bool dig_config_identifies(const struct dig_config *const config, const char *const trajectory)

@@ -244,24 +244,24 @@ static enum dig_status read_map(const struct dig_config_map_work *const work,
     return status == DIG_OK ? check_signals(work) : status;
 }
 
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
+{
+    const struct dig_config_map_work *const asked  = into;
+    const struct dig_map_text *const        text   = loaded;
+    struct dig_signal_map                   map    = text->map;
+    const struct dig_config_map_work        work   = { path, asked->dbc, &map, error };
+    const enum dig_status                   status = read_map(&work, text);
+    if (status == DIG_OK) {
+        *asked->map = map;
+    }
+    return status;
+}
+
 enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc *const dbc,
                                     struct dig_signal_map *const map, struct dig_error *const error)
 {
-    assert(path != NULL && map != NULL);
-    cyaml_data_t   *data   = NULL;
-    enum dig_status status = dig_yaml_load(path, &dig_map_schema, &data, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    const struct dig_map_text *const text   = data;
-    struct dig_signal_map            loaded = text->map;
-    const struct dig_config_map_work work   = {
-          .path = path, .dbc = dbc, .map = &loaded, .error = error
-    };
-    status = read_map(&work, text);
-    dig_yaml_free(&dig_map_schema, data);
-    if (status == DIG_OK) {
-        *map = loaded;
-    }
-    return status;
+    assert(map != NULL);
+    struct dig_config_map_work asked = { .dbc = dbc, .map = map };
+    return dig_yaml_read(path, &dig_map_schema, take, &asked, error);
 }

@@ -61,13 +61,45 @@ static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POIN
     "  - {weight_kg: 2, name: head}\n"                                                             \
     "  - weight_kg: 3\n"
 
-TEST(what_fits_the_schema_is_loaded)
+static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                            struct dig_error *const error)
+{
+    (void)path;
+    (void)error;
+    *(struct thing *)into = *(const struct thing *)loaded;
+    return DIG_OK;
+}
+
+// A thing without a name: nothing was read.
+static enum dig_status read_thing(const char *const path, struct thing *const thing,
+                                  struct dig_error *const error)
+{
+    *thing = (struct thing){ .name = "" };
+    return dig_yaml_read(path, &schema, take, thing, error);
+}
+
+static enum dig_status refuse(const char *const path, cyaml_data_t *const loaded, void *const into,
+                              struct dig_error *const error)
+{
+    (void)into;
+    return dig_yaml_refuse(path, error, "inner.weight_kg: %g, expected 3",
+                           ((const struct thing *)loaded)->inner.weight_kg);
+}
+
+TEST(what_the_taker_refuses_is_refused)
 {
     struct dig_error error = { "" };
-    cyaml_data_t    *data  = NULL;
-    assert_int_equal(dig_yaml_load(scratch_write("good.yaml", GOOD), &schema, &data, &error),
-                     DIG_OK);
-    const struct thing *const t = data;
+    struct thing     thing;
+    assert_refused(dig_yaml_read(scratch_write("good.yaml", GOOD), &schema, refuse, &thing, &error),
+                   error, DIG_EINVAL, "good.yaml:9: inner.weight_kg: 1, expected 3");
+}
+
+TEST(what_fits_the_schema_is_loaded)
+{
+    struct dig_error          error = { "" };
+    struct thing              thing;
+    const struct thing *const t = &thing;
+    assert_int_equal(read_thing(scratch_write("good.yaml", GOOD), &thing, &error), DIG_OK);
     assert_string_equal(t->name, "hammer");
     assert_int_equal(t->kind, 2);
     assert_int_equal(t->small, -128);
@@ -79,16 +111,14 @@ TEST(what_fits_the_schema_is_loaded)
     assert_int_equal(t->parts_count, 2);
     assert_string_equal(t->parts[0].name, "head");
     assert_close(t->parts[1].weight_kg, 3.0, 0.0);
-    dig_yaml_free(&schema, data);
 }
 
 TEST(a_comma_as_the_users_decimal_point_changes_nothing)
 {
-    cyaml_data_t *data   = NULL;
-    const char   *before = setlocale(LC_NUMERIC, "de_DE.UTF-8");
-    assert_int_equal(dig_yaml_load(scratch_write("good.yaml", GOOD), &schema, &data, NULL), DIG_OK);
-    assert_close(((const struct thing *)data)->pair[0], 1.5e-3, 1e-18);
-    dig_yaml_free(&schema, data);
+    struct thing thing;
+    const char  *before = setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    assert_int_equal(read_thing(scratch_write("good.yaml", GOOD), &thing, NULL), DIG_OK);
+    assert_close(thing.pair[0], 1.5e-3, 1e-18);
     (void)before; // where that locale is not installed nothing was changed, and nothing is shown
     (void)setlocale(LC_NUMERIC, "C");
 }
@@ -158,10 +188,10 @@ TEST(every_defect_is_told_by_line_key_and_expectation)
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_error  error = { "" };
-        cyaml_data_t     *data  = NULL;
-        const char *const path  = scratch_write("bad.yaml", bad[i].text);
-        assert_int_equal(dig_yaml_load(path, &schema, &data, &error), DIG_EINVAL);
-        assert_null(data);
+        struct thing      thing;
+        const char *const path = scratch_write("bad.yaml", bad[i].text);
+        assert_int_equal(read_thing(path, &thing, &error), DIG_EINVAL);
+        assert_string_equal(thing.name, "");
         assert_ptr_equal(strstr(error.text, path), error.text);
         assert_ptr_equal(strstr(error.text + strlen(path), bad[i].line), error.text + strlen(path));
         assert_contains(error.text, bad[i].says);
@@ -172,15 +202,13 @@ TEST(every_defect_is_told_by_line_key_and_expectation)
 TEST(a_file_that_cannot_be_read_is_told_with_the_systems_words)
 {
     struct dig_error error = { "" };
-    cyaml_data_t    *data  = NULL;
-    assert_int_equal(dig_yaml_load(scratch_path("absent.yaml"), &schema, &data, &error), DIG_EIO);
+    struct thing     thing;
+    assert_int_equal(read_thing(scratch_path("absent.yaml"), &thing, &error), DIG_EIO);
     assert_contains(error.text, "absent.yaml: No such file");
-    assert_int_equal(dig_yaml_load(scratch_dir, &schema, &data, &error), DIG_EINVAL);
+    assert_int_equal(read_thing(scratch_dir, &thing, &error), DIG_EINVAL);
     assert_contains(error.text, "no regular file");
-    assert_refused(
-        dig_yaml_load(scratch_write_bytes("nul.yaml", "a: b\nc\0d", 8), &schema, &data, &error),
-        error, DIG_EINVAL, "nul.yaml:2: a NUL byte, expected a text file");
-    assert_null(data);
+    assert_refused(read_thing(scratch_write_bytes("nul.yaml", "a: b\nc\0d", 8), &thing, &error),
+                   error, DIG_EINVAL, "nul.yaml:2: a NUL byte, expected a text file");
 }
 
 TEST(a_value_is_found_by_its_dotted_key)
@@ -236,20 +264,18 @@ TEST(damaged_bytes_never_do_worse_than_a_refusal)
             text[i]         = evil[e];
 
             struct dig_error      error = { "" };
-            cyaml_data_t         *data  = NULL;
+            struct thing          thing;
             const enum dig_status status =
-                dig_yaml_load(scratch_write("evil.yaml", text), &schema, &data, &error);
-            assert_true((status == DIG_OK) == (data != NULL));
+                read_thing(scratch_write("evil.yaml", text), &thing, &error);
+            assert_true((status == DIG_OK) == (thing.name[0] != '\0'));
             assert_true(status == DIG_OK || strstr(error.text, "evil.yaml:") != NULL);
-            dig_yaml_free(&schema, data);
             text[i] = kept;
         }
         struct dig_error      error = { "" };
-        cyaml_data_t         *data  = NULL;
+        struct thing          thing;
         const enum dig_status cut =
-            dig_yaml_load(scratch_write_bytes("cut.yaml", text, i), &schema, &data, &error);
-        assert_true((cut == DIG_OK) == (data != NULL));
-        dig_yaml_free(&schema, data);
+            read_thing(scratch_write_bytes("cut.yaml", text, i), &thing, &error);
+        assert_true((cut == DIG_OK) == (thing.name[0] != '\0'));
     }
 }
 
