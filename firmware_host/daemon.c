@@ -63,24 +63,25 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
 static void connect_threads(struct dig_daemon *const d)
 {
     struct handoff_memory *const m = &d->memory;
-    dig_ring_init(&d->readings, sizeof m->readings[0], READINGS, m->readings);
-    dig_ring_init(&d->records, sizeof m->records[0], RECORDS, m->records);
+    struct dig_handoffs *const   h = &d->handoffs;
+    dig_ring_init(&h->readings, sizeof m->readings[0], READINGS, m->readings);
+    dig_ring_init(&h->records, sizeof m->records[0], RECORDS, m->records);
     // NOLINTNEXTLINE(bugprone-sizeof-expression): the memory itself is handed over, by pointer
-    dig_ring_init(&d->digs, sizeof m->digs[0], DIGS, m->digs);
-    dig_ring_init(&d->results, sizeof m->results[0], RESULTS, m->results);
-    dig_ring_init(&d->estimates, sizeof m->estimates[0], ESTIMATES, m->estimates);
+    dig_ring_init(&h->digs, sizeof m->digs[0], DIGS, m->digs);
+    dig_ring_init(&h->results, sizeof m->results[0], RESULTS, m->results);
+    dig_ring_init(&h->estimates, sizeof m->estimates[0], ESTIMATES, m->estimates);
     // NOLINTNEXTLINE(bugprone-sizeof-expression): as above
-    dig_ring_init(&d->spares, sizeof m->spares[0], DIGS, m->spares);
-    dig_latest_init(&d->basis, sizeof m->basis[0], m->basis);
-    dig_latest_init(&d->table, sizeof m->table[0], m->table);
-    dig_latest_init(&d->tables, sizeof m->tables[0], m->tables);
-    dig_latest_init(&d->predictions, sizeof m->predictions[0], m->predictions);
-    dig_latest_init(&d->tick_status, sizeof m->tick_status[0], m->tick_status);
-    dig_latest_init(&d->input_log, sizeof m->input_log[0], m->input_log);
-    dig_latest_init(&d->fit_log, sizeof m->fit_log[0], m->fit_log);
+    dig_ring_init(&h->spares, sizeof m->spares[0], DIGS, m->spares);
+    dig_latest_init(&h->basis, sizeof m->basis[0], m->basis);
+    dig_latest_init(&h->table, sizeof m->table[0], m->table);
+    dig_latest_init(&h->tables, sizeof m->tables[0], m->tables);
+    dig_latest_init(&h->predictions, sizeof m->predictions[0], m->predictions);
+    dig_latest_init(&h->tick_status, sizeof m->tick_status[0], m->tick_status);
+    dig_latest_init(&h->input_log, sizeof m->input_log[0], m->input_log);
+    dig_latest_init(&h->fit_log, sizeof m->fit_log[0], m->fit_log);
 
-    d->input.readings = &d->readings;
-    d->input.log      = &d->input_log;
+    d->input.readings = &h->readings;
+    d->input.log      = &h->input_log;
     d->input.stop     = &d->stop;
 
     const struct dig_config *const config   = &d->loaded.config;
@@ -92,15 +93,12 @@ static void connect_threads(struct dig_daemon *const d)
         .next_dig_s   = 0.5,
         .set          = d->loaded.set,
     };
-    const struct dig_loop_ports ports = { &d->readings,    &d->basis,       &d->table,
-                                          &d->spares,      &d->records,     &d->digs,
-                                          &d->predictions, &d->tick_status, &d->estimates };
-    dig_loop_init(&d->loop, &settings, &ports, d->estimator);
+    dig_loop_init(&d->loop, &settings, h, d->estimator);
     for (size_t i = 0; i < DIGS_MORE; i++) {
-        (void)dig_ring_push(&d->spares, &d->dig_memory[i]);
+        (void)dig_ring_push(&h->spares, &d->dig_memory[i]);
     }
 
-    d->early.estimates = &d->estimates;
+    d->early.estimates = &h->estimates;
     dig_early_match_clear(&d->early, d->loaded.set);
     atomic_store(&d->publisher_generation, 1);
     d->fit = (struct dig_fit){
@@ -109,31 +107,19 @@ static void connect_threads(struct dig_daemon *const d)
         .machine        = &d->loaded.machine,
         .track_settings = { .expires_s    = config->match_expires_s,
                             .drift_floors = config->drift_floors },
-        .ports          = { .digs    = &d->digs,
-                            .spares  = &d->spares,
-                            .basis   = &d->basis,
-                            .table   = &d->table,
-                            .results = &d->results,
-                            .tables  = &d->tables,
-                            .log     = &d->fit_log },
+        .handoffs       = h,
         .stop           = &d->stop,
         .matcher        = { .tick_generation      = &d->loop.generation,
                             .publisher_generation = &d->publisher_generation },
         .early          = &d->early,
     };
     d->publisher = (struct dig_publisher){
-        .config      = config,
-        .set         = d->loaded.set,
-        .records     = &d->records,
-        .predictions = &d->predictions,
-        .results     = &d->results,
-        .tables      = &d->tables,
-        .generation  = &d->publisher_generation,
-        .tick_status = &d->tick_status,
-        .input_log   = &d->input_log,
-        .fit_log     = &d->fit_log,
-        .stop        = &d->stop_publish,
-        .health      = { .tick_s = config->tick_s, .input = &d->input, .fit = &d->fit.count }
+        .config     = config,
+        .set        = d->loaded.set,
+        .handoffs   = h,
+        .generation = &d->publisher_generation,
+        .stop       = &d->stop_publish,
+        .health     = { .tick_s = config->tick_s, .input = &d->input, .fit = &d->fit.count }
     };
 }
 

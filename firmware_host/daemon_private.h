@@ -41,8 +41,7 @@ struct dig_daemon {
     struct dig_fit           fit;
     struct dig_publisher     publisher;
     struct dig_early_match   early;
-    struct dig_ring          readings, records, digs, spares, estimates, results;
-    struct dig_latest        basis, table, tables, predictions, tick_status, input_log, fit_log;
+    struct dig_handoffs      handoffs;
     atomic_llong             publisher_generation;
     struct handoff_memory    memory;
     sem_t                    granted;

@@ -60,8 +60,8 @@ static void *publish_main(void *const context)
 static bool is_quiet(struct dig_daemon *const d)
 {
     return atomic_load(&d->input.ended) &&
-           atomic_load(&d->readings.written) == atomic_load(&d->readings.read) &&
-           atomic_load(&d->digs.written) == atomic_load(&d->digs.read) &&
+           atomic_load(&d->handoffs.readings.written) == atomic_load(&d->handoffs.readings.read) &&
+           atomic_load(&d->handoffs.digs.written) == atomic_load(&d->handoffs.digs.read) &&
            !atomic_load(&d->fit.busy);
 }
 

@@ -17,9 +17,8 @@
 #define WIRES_ESTIMATES 4096 // estimates, of the dig going on
 
 struct wires {
-    struct dig_ring   readings, records, digs, spares, results, estimates;
-    struct dig_latest basis, table, tables, predictions, tick_status, log;
-    atomic_llong      tick_generation, publisher_generation; // of the table in use there
+    struct dig_handoffs handoffs;
+    atomic_llong        tick_generation, publisher_generation; // of the table in use there
 
     struct dig_reading           reading_memory[WIRES_RING];
     struct dig_record            record_memory[WIRES_RING];
@@ -36,18 +35,19 @@ struct wires {
 /// All of them empty, the first table in use. They stay where they are.
 static inline void wires_init(struct wires *const w)
 {
-    dig_ring_init(&w->readings, sizeof w->reading_memory[0], WIRES_RING, w->reading_memory);
-    dig_ring_init(&w->records, sizeof w->record_memory[0], WIRES_RING, w->record_memory);
-    dig_ring_init(&w->digs, sizeof w->dig_memory[0], 4, w->dig_memory);
-    dig_ring_init(&w->spares, sizeof w->spare_memory[0], 4, w->spare_memory);
-    dig_ring_init(&w->results, sizeof w->result_memory[0], WIRES_RESULTS, w->result_memory);
-    dig_ring_init(&w->estimates, sizeof w->estimate_memory[0], WIRES_ESTIMATES, w->estimate_memory);
-    dig_latest_init(&w->basis, sizeof w->basis_memory[0], w->basis_memory);
-    dig_latest_init(&w->table, sizeof w->table_memory[0], w->table_memory);
-    dig_latest_init(&w->tables, sizeof w->tables_memory[0], w->tables_memory);
-    dig_latest_init(&w->predictions, sizeof w->predictions_memory[0], w->predictions_memory);
-    dig_latest_init(&w->tick_status, sizeof w->tick_status_memory[0], w->tick_status_memory);
-    dig_latest_init(&w->log, sizeof w->log_memory[0], w->log_memory);
+    struct dig_handoffs *const h = &w->handoffs;
+    dig_ring_init(&h->readings, sizeof w->reading_memory[0], WIRES_RING, w->reading_memory);
+    dig_ring_init(&h->records, sizeof w->record_memory[0], WIRES_RING, w->record_memory);
+    dig_ring_init(&h->digs, sizeof w->dig_memory[0], 4, w->dig_memory);
+    dig_ring_init(&h->spares, sizeof w->spare_memory[0], 4, w->spare_memory);
+    dig_ring_init(&h->results, sizeof w->result_memory[0], WIRES_RESULTS, w->result_memory);
+    dig_ring_init(&h->estimates, sizeof w->estimate_memory[0], WIRES_ESTIMATES, w->estimate_memory);
+    dig_latest_init(&h->basis, sizeof w->basis_memory[0], w->basis_memory);
+    dig_latest_init(&h->table, sizeof w->table_memory[0], w->table_memory);
+    dig_latest_init(&h->tables, sizeof w->tables_memory[0], w->tables_memory);
+    dig_latest_init(&h->predictions, sizeof w->predictions_memory[0], w->predictions_memory);
+    dig_latest_init(&h->tick_status, sizeof w->tick_status_memory[0], w->tick_status_memory);
+    dig_latest_init(&h->fit_log, sizeof w->log_memory[0], w->log_memory);
     atomic_store(&w->tick_generation, 1);
     atomic_store(&w->publisher_generation, 1);
 }
@@ -82,22 +82,6 @@ static inline struct dig_loop_settings wires_loop_settings(const struct dig_curv
     };
 }
 
-/// The ends of them that are the tick's.
-static inline struct dig_loop_ports wires_loop_ports(struct wires *const w)
-{
-    return (struct dig_loop_ports){
-        .readings    = &w->readings,
-        .basis       = &w->basis,
-        .table       = &w->table,
-        .spares      = &w->spares,
-        .records     = &w->records,
-        .digs        = &w->digs,
-        .predictions = &w->predictions,
-        .tick_status = &w->tick_status,
-        .estimates   = &w->estimates,
-    };
-}
-
 /// A matcher between them, at the first table; no dig goes on yet.
 static inline void wires_init_fit(struct wires *const w, const struct dig_config *const config,
                                   struct dig_curve_set *const   set,
@@ -106,18 +90,12 @@ static inline void wires_init_fit(struct wires *const w, const struct dig_config
     *fit = (struct dig_fit){
         .config         = config,
         .track_settings = { .expires_s = 3600.0, .drift_floors = 3.0 },
-        .ports          = { .digs    = &w->digs,
-                            .spares  = &w->spares,
-                            .basis   = &w->basis,
-                            .table   = &w->table,
-                            .results = &w->results,
-                            .tables  = &w->tables,
-                            .log     = &w->log },
+        .handoffs       = &w->handoffs,
         .matcher        = { .tick_generation      = &w->tick_generation,
                             .publisher_generation = &w->publisher_generation },
         .early          = early,
     };
-    early->estimates = &w->estimates;
+    early->estimates = &w->handoffs.estimates;
     dig_early_match_clear(early, set);
     dig_matcher_exchange(&fit->matcher, set, WIRES_LAMBDA);
 }

@@ -159,7 +159,7 @@ static void match_provisionally(struct dig_fit *const fit, const struct dig_obse
         dig_fit_publish_basis(fit, provisional);
     }
     const struct dig_fit_result result = { .track = *provisional };
-    (void)dig_ring_push(fit->ports.results, &result);
+    (void)dig_ring_push(&fit->handoffs->results, &result);
 }
 
 // The dig in progress gives a provisional match and a forecast of itself as it is dug.
@@ -194,7 +194,7 @@ static void end_provisional(struct dig_fit *const fit)
     dig_fit_publish_track(fit);
     if (!fit->track.any) {
         dig_gravel_track_invalidate(&result.track, "the simple dig cannot be matched");
-        (void)dig_ring_push(fit->ports.results, &result);
+        (void)dig_ring_push(&fit->handoffs->results, &result);
     }
 }
 
@@ -279,7 +279,7 @@ void dig_fit_restore(struct dig_fit *const fit)
 static bool take_finished(struct dig_fit *const fit)
 {
     struct dig_recorded_dig *recording = NULL;
-    if (!dig_ring_pop(fit->ports.digs, &recording)) {
+    if (!dig_ring_pop(&fit->handoffs->digs, &recording)) {
         return false;
     }
     struct dig_observation dig;
@@ -290,7 +290,7 @@ static bool take_finished(struct dig_fit *const fit)
     } else {
         count_unobserved(fit, recording);
     }
-    (void)dig_ring_push(fit->ports.spares, &recording);
+    (void)dig_ring_push(&fit->handoffs->spares, &recording);
     atomic_fetch_add(&fit->count.seen, 1);
     return true;
 }

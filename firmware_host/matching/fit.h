@@ -29,17 +29,6 @@ struct dig_table_update {
     int64_t                     generation;
 };
 
-/// Queues to the tick, to the publisher and to the log.
-struct dig_fit_ports {
-    struct dig_ring   *digs;    // in:  struct dig_recorded_dig *
-    struct dig_ring   *spares;  // out: the same memory, back to the tick
-    struct dig_latest *basis;   // out: struct dig_prediction_basis of the tick's table
-    struct dig_latest *table;   // out: struct dig_prediction_basis of another table
-    struct dig_ring   *results; // out: struct dig_fit_result
-    struct dig_latest *tables;  // out: struct dig_table_update
-    struct dig_latest *log;     // out: struct dig_log_line
-};
-
 /// Written by the matching thread, read by others. Never reset.
 struct dig_fit_counters {
     atomic_llong seen;           // digs taken from the queue
@@ -56,7 +45,7 @@ struct dig_fit {
     const struct dig_config         *config;
     const struct dig_machine        *machine; // NULL: forces keep their sensors' sigma
     struct dig_gravel_track_settings track_settings;
-    struct dig_fit_ports             ports;
+    struct dig_handoffs             *handoffs;
     const atomic_bool               *stop;
 
     // shared with other threads

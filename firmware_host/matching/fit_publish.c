@@ -15,7 +15,7 @@ void dig_fit_log(struct dig_fit *const fit, const char *const format, ...)
     // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is the line above
     (void)vsnprintf(line.text, sizeof line.text, format, args);
     va_end(args);
-    dig_latest_put(fit->ports.log, &line);
+    dig_latest_put(&fit->handoffs->fit_log, &line);
 }
 
 void dig_fit_publish_basis(struct dig_fit *const fit, const struct dig_gravel_track *const track)
@@ -31,7 +31,8 @@ void dig_fit_publish_basis(struct dig_fit *const fit, const struct dig_gravel_tr
     basis->expires_ns                          = track->any ? track->expires_ns : 0;
     dig_forecast_make(matcher->set, matcher->lambda, &track->match, &basis->forecast);
 
-    dig_latest_put(dig_matcher_is_of_tick(matcher) ? fit->ports.basis : fit->ports.table, basis);
+    dig_latest_put(dig_matcher_is_of_tick(matcher) ? &fit->handoffs->basis : &fit->handoffs->table,
+                   basis);
     fit->basis_as_dug = false;
 }
 
@@ -52,7 +53,7 @@ void dig_fit_publish_basis_as_dug(struct dig_fit *const                fit,
         expected->valid     = false;
         expected->off_table = true;
     }
-    dig_latest_put(fit->ports.basis, &fit->basis);
+    dig_latest_put(&fit->handoffs->basis, &fit->basis);
     fit->basis_as_dug = true;
 }
 
@@ -73,7 +74,7 @@ void dig_fit_publish_track(struct dig_fit *const fit)
         (void)snprintf(result.hint_trajectory, sizeof result.hint_trajectory, "%s",
                        matcher->set->trajectory[hint].name);
     }
-    (void)dig_ring_push(fit->ports.results, &result);
+    (void)dig_ring_push(&fit->handoffs->results, &result);
 }
 
 void dig_fit_save_state(struct dig_fit *const fit)

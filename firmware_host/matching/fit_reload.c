@@ -65,7 +65,7 @@ void dig_fit_reload(struct dig_fit *const fit)
         dig_gravel_track_invalidate(&fit->track, "another table");
     }
     const struct dig_table_update update = { set, fit->matcher.generation };
-    dig_latest_put(fit->ports.tables, &update);
+    dig_latest_put(&fit->handoffs->tables, &update);
     dig_fit_publish_track(fit);
     dig_fit_log(fit, "%s", "");
     atomic_fetch_add(&fit->count.reloads, 1);

@@ -56,7 +56,7 @@ static void publish_records(struct dig_publisher *const p)
     static const struct timespec pause = { .tv_nsec = 500000L };
     struct dig_record            record;
     int                          burst = 0;
-    while (dig_ring_pop(p->records, &record)) {
+    while (dig_ring_pop(&p->handoffs->records, &record)) {
         if (record.has_estimate) {
             p->estimate = record.estimate;
         }
@@ -79,7 +79,7 @@ static void publish_records(struct dig_publisher *const p)
 // Uses a new table as soon as the tick does.
 static void follow_table(struct dig_publisher *const p)
 {
-    (void)dig_latest_take(p->tables, &p->update);
+    (void)dig_latest_take(&p->handoffs->tables, &p->update);
     if (p->update.generation == p->health.tick_status.generation && p->update.set != NULL) {
         p->set        = p->update.set;
         p->update.set = NULL;
@@ -92,7 +92,7 @@ static void follow_table(struct dig_publisher *const p)
 static void publish_prediction(struct dig_publisher *const p)
 {
     struct dig_prediction_record record;
-    if (dig_latest_take(p->predictions, &record) && p->output != NULL &&
+    if (dig_latest_take(&p->handoffs->predictions, &record) && p->output != NULL &&
         record.generation == atomic_load(p->generation)) {
         check_sent(p, dig_output_prediction(p->output, p->set, &record));
     }
@@ -103,7 +103,7 @@ static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
     bool                  news   = false;
     struct dig_fit_result before = p->result;
     struct dig_fit_result next;
-    while (dig_ring_pop(p->results, &next)) {
+    while (dig_ring_pop(&p->handoffs->results, &next)) {
         // A provisional match is published once; it expires by itself.
         if (next.track.going_on) {
             if (p->output != NULL) {
@@ -142,8 +142,8 @@ static const char *state_of(const struct dig_publisher *const p, const bool stop
 static void take_log_lines(struct dig_publisher *const p, bool *const news)
 {
     struct dig_log_line note;
-    const bool          from_input = dig_latest_take(p->input_log, &note);
-    if (from_input || dig_latest_take(p->fit_log, &note)) {
+    const bool          from_input = dig_latest_take(&p->handoffs->input_log, &note);
+    if (from_input || dig_latest_take(&p->handoffs->fit_log, &note)) {
         if (strcmp(note.text, p->note.text) != 0) {
             *news   = true;
             p->note = note;
@@ -175,7 +175,7 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
 {
     bool news = false;
     take_log_lines(p, &news);
-    (void)dig_latest_take(p->tick_status, &p->health.tick_status);
+    (void)dig_latest_take(&p->handoffs->tick_status, &p->health.tick_status);
     const char *const state = state_of(p, stopping);
     if (state != p->health.state) {
         news            = true;

@@ -19,17 +19,10 @@ struct dig_console {
     void (*show)(const char *line);
 };
 
-/// The queues' other ends are the tick's, the matching thread's and the input's.
 struct dig_publisher {
     const struct dig_config    *config;
     const struct dig_curve_set *set;
-    struct dig_ring            *records;     // in
-    struct dig_latest          *predictions; // in
-    struct dig_ring            *results;     // in
-    struct dig_latest          *tables;      // in
-    struct dig_latest          *tick_status; // in
-    struct dig_latest          *input_log;   // in
-    struct dig_latest          *fit_log;     // in
+    struct dig_handoffs        *handoffs;
     const atomic_bool          *stop;
     atomic_llong               *generation; // out: of the table in use here
     struct dig_console          console;    // used on this thread

@@ -55,4 +55,22 @@ bool dig_latest_take(struct dig_latest *latest, void *record);
 /// nothing was put since. Consumer only.
 const void *dig_latest_look(struct dig_latest *latest);
 
+/// All that the daemon's threads hand each other, each queue with its two ends.
+struct dig_handoffs {
+    struct dig_ring readings;      // input -> tick: struct dig_reading
+    struct dig_ring records;       // tick -> publisher: struct dig_record
+    struct dig_ring digs;          // tick -> matcher: struct dig_recorded_dig *, finished digs
+    struct dig_ring spares;        // matcher -> tick: the same memory, for further digs
+    struct dig_ring estimates;     // tick -> matcher: struct dig_estimate, of the dig in progress.
+                                   // What does not fit is dropped: less is seen, nothing wrong
+    struct dig_ring   results;     // matcher -> publisher: struct dig_fit_result
+    struct dig_latest basis;       // matcher -> tick: struct dig_prediction_basis of its table
+    struct dig_latest table;       // matcher -> tick: struct dig_prediction_basis of another table
+    struct dig_latest tables;      // matcher -> publisher: struct dig_table_update
+    struct dig_latest predictions; // tick -> publisher: struct dig_prediction_record
+    struct dig_latest tick_status; // tick -> publisher: struct dig_tick_status
+    struct dig_latest input_log;   // input -> publisher: struct dig_log_line
+    struct dig_latest fit_log;     // matcher -> publisher: struct dig_log_line
+};
+
 #endif // DIG_FIRMWARE_HOST_THREADS_HANDOFF_H

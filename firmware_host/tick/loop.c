@@ -21,11 +21,11 @@ const char *dig_prediction_state_str(const enum dig_prediction_state state)
 }
 
 void dig_loop_init(struct dig_loop *const loop, const struct dig_loop_settings *const settings,
-                   const struct dig_loop_ports *const ports, struct dig_estimator *const estimator)
+                   struct dig_handoffs *const handoffs, struct dig_estimator *const estimator)
 {
-    assert(loop != NULL && settings != NULL && ports != NULL && estimator != NULL);
+    assert(loop != NULL && settings != NULL && handoffs != NULL && estimator != NULL);
     *loop = (struct dig_loop){ .settings        = *settings,
-                               .ports           = *ports,
+                               .handoffs        = handoffs,
                                .estimator       = estimator,
                                .set             = settings->set,
                                .published_state = DIG_PREDICTION_NO_GRAVEL,
@@ -54,7 +54,7 @@ static bool take_sample(struct dig_loop *const loop, const struct dig_sample *co
         record.estimate        = loop->estimate;
         record.has_estimate    = true;
     }
-    loop->tick_status.lost += dig_ring_push(loop->ports.records, &record) ? 0 : 1;
+    loop->tick_status.lost += dig_ring_push(&loop->handoffs->records, &record) ? 0 : 1;
     return record.has_estimate;
 }
 
@@ -63,10 +63,10 @@ static void exchange_digs(struct dig_loop *const loop)
 {
     struct dig_recorded_dig *recording = dig_estimator_take_recording(loop->estimator);
     if (recording != NULL) {
-        (void)dig_ring_push(loop->ports.digs, &recording);
+        (void)dig_ring_push(&loop->handoffs->digs, &recording);
     }
     if (dig_estimator_wants_spare(loop->estimator) &&
-        dig_ring_pop(loop->ports.spares, &recording)) {
+        dig_ring_pop(&loop->handoffs->spares, &recording)) {
         dig_estimator_lend(loop->estimator, recording);
     }
 }
@@ -74,7 +74,7 @@ static void exchange_digs(struct dig_loop *const loop)
 // Takes a new forecast at once, another table and machine only between two digs.
 static void take_basis(struct dig_loop *const loop)
 {
-    const struct dig_prediction_basis *const basis = dig_latest_look(loop->ports.basis);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&loop->handoffs->basis);
     if (basis != NULL && basis->generation == loop->tick_status.generation) {
         loop->basis = basis;
         dig_estimator_set_forecast(loop->estimator, basis->known ? &basis->forecast : NULL);
@@ -82,7 +82,7 @@ static void take_basis(struct dig_loop *const loop)
     if (!dig_estimator_is_idle(loop->estimator)) {
         return;
     }
-    const struct dig_prediction_basis *const table = dig_latest_look(loop->ports.table);
+    const struct dig_prediction_basis *const table = dig_latest_look(&loop->handoffs->table);
     if (table != NULL) {
         dig_estimator_set_table(loop->estimator, table->set);
         dig_estimator_set_machine(loop->estimator, &table->machine);
@@ -106,7 +106,7 @@ static void publish_prediction(struct dig_loop *const loop, const int64_t now_ns
     record->generation                              = loop->tick_status.generation;
     record->dig_count                               = basis != NULL ? basis->dig_count : 0;
     record->outside = basis != NULL && basis->known && basis->outside;
-    dig_latest_put(loop->ports.predictions, record);
+    dig_latest_put(&loop->handoffs->predictions, record);
 }
 
 // Whether anything can be predicted, whatever is dug.
@@ -189,7 +189,7 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
     assert(loop != NULL);
     take_basis(loop);
     struct dig_reading reading;
-    for (int i = 0; i < DIG_READINGS_PER_TICK && dig_ring_pop(loop->ports.readings, &reading);
+    for (int i = 0; i < DIG_READINGS_PER_TICK && dig_ring_pop(&loop->handoffs->readings, &reading);
          i++) {
         struct dig_sample sample;
         if (dig_assembler_take(&loop->assembler, &reading, &sample)) {
@@ -197,7 +197,7 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
             exchange_digs(loop);
             // After the digs: a reader that finds the end of a dig here finds its recording there.
             if (estimated) {
-                (void)dig_ring_push(loop->ports.estimates, &loop->estimate);
+                (void)dig_ring_push(&loop->handoffs->estimates, &loop->estimate);
             }
         }
     }
@@ -212,7 +212,7 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
     loop->tick_status.time_ns   = now_ns;
     loop->tick_status.drops     = loop->assembler.drops;
     loop->tick_status.lost_digs = dig_estimator_lost_digs(loop->estimator);
-    dig_latest_put(loop->ports.tick_status, &loop->tick_status);
+    dig_latest_put(&loop->handoffs->tick_status, &loop->tick_status);
 }
 
 static int64_t clock_ns(const clockid_t clock)

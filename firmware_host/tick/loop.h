@@ -77,21 +77,6 @@ struct dig_tick_status {
     bool             fresh; // a sample that gives the moment came within stale_s
 };
 
-/// The tick's ends of the queues; the other ends are other threads'.
-struct dig_loop_ports {
-    struct dig_ring   *readings;    // in:  struct dig_reading
-    struct dig_latest *basis;       // in:  struct dig_prediction_basis of the table in use
-    struct dig_latest *table;       // in:  struct dig_prediction_basis of another table
-    struct dig_ring   *spares;      // in:  struct dig_recorded_dig *, memory for digs
-    struct dig_ring   *records;     // out: struct dig_record
-    struct dig_ring   *digs;        // out: struct dig_recorded_dig *, finished digs
-    struct dig_latest *predictions; // out: struct dig_prediction_record
-    struct dig_latest *tick_status; // out: struct dig_tick_status
-    // out: struct dig_estimate, for matching the dig in progress. What does not fit is dropped: the
-    // reader then sees less of the dig, and nothing wrong.
-    struct dig_ring *estimates;
-};
-
 struct dig_loop_settings {
     struct dig_assembler_settings assembler;
     double                        tick_s;
@@ -103,7 +88,7 @@ struct dig_loop_settings {
 
 struct dig_loop {
     struct dig_loop_settings           settings;
-    struct dig_loop_ports              ports;
+    struct dig_handoffs               *handoffs;
     struct dig_estimator              *estimator;
     struct dig_assembler               assembler;
     struct dig_tick_status             tick_status;
@@ -119,9 +104,9 @@ struct dig_loop {
     atomic_llong                       generation; // of the table in use, for other threads
 };
 
-/// The estimator must be initialised and outlive the loop.
+/// The estimator must be initialised; it and the handoffs outlive the loop.
 void dig_loop_init(struct dig_loop *loop, const struct dig_loop_settings *settings,
-                   const struct dig_loop_ports *ports, struct dig_estimator *estimator);
+                   struct dig_handoffs *handoffs, struct dig_estimator *estimator);
 
 /// Readings taken in one tick: many times what a bus brings in one.
 #define DIG_READINGS_PER_TICK 256

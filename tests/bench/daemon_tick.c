@@ -79,14 +79,13 @@ static struct dig_reading reading_at(const struct dig_machine_recording *const r
 static void connect(struct bench *const b)
 {
     wires_init(&b->wires);
-    const struct dig_loop_ports ports    = wires_loop_ports(&b->wires);
-    struct dig_loop_settings    settings = wires_loop_settings(b->set);
-    settings.tick_s                      = 1e-9 * (double)STEP_ns;
-    settings.prediction_s                = 1.0 / 15.0;
-    dig_loop_init(&b->loop, &settings, &ports, b->estimator);
+    struct dig_loop_settings settings = wires_loop_settings(b->set);
+    settings.tick_s                   = 1e-9 * (double)STEP_ns;
+    settings.prediction_s             = 1.0 / 15.0;
+    dig_loop_init(&b->loop, &settings, &b->wires.handoffs, b->estimator);
     for (int i = 0; i < 2; i++) {
         b->buffer[i] = calloc(1, dig_recorded_dig_size());
-        (void)dig_ring_push(&b->wires.spares, &b->buffer[i]);
+        (void)dig_ring_push(&b->wires.handoffs.spares, &b->buffer[i]);
     }
     wires_init_fit(&b->wires, &b->config, b->set, &b->early, &b->fit);
     b->fit.machine                  = &b->machine;
@@ -127,11 +126,11 @@ static void be_the_others(struct bench *const b)
     struct dig_record            record;
     struct dig_prediction_record predictions;
     struct dig_fit_result        result;
-    while (dig_ring_pop(&b->wires.records, &record)) {
+    while (dig_ring_pop(&b->wires.handoffs.records, &record)) {
     }
-    (void)dig_latest_take(&b->wires.predictions, &predictions);
+    (void)dig_latest_take(&b->wires.handoffs.predictions, &predictions);
     (void)dig_fit_once(&b->fit);
-    (void)dig_ring_pop(&b->wires.results, &result);
+    (void)dig_ring_pop(&b->wires.handoffs.results, &result);
 }
 
 // What the passes tell their parent.
@@ -176,7 +175,7 @@ static int pass(char *argv[], const long ticks, struct told *const told)
     size_t row = 0;
     for (long i = 0; i < ticks; i++) {
         const struct dig_reading reading = reading_at(&b->recording, i * STEP_ns, &row);
-        (void)dig_ring_push(&b->wires.readings, &reading);
+        (void)dig_ring_push(&b->wires.handoffs.readings, &reading);
         const double begin_us = cpu_us();
         dig_loop_tick(&b->loop, (i + 1) * STEP_ns);
         const double ticked_us = cpu_us();

@@ -66,16 +66,15 @@ static inline struct bench *bench_create(void)
         dig_estimator_init(b->estimator, &b->machine, &b->cube.set, &b->estimator_settings),
         DIG_OK);
     wires_init(&b->wires);
-    dig_ring_init(&b->wires.estimates, sizeof b->wires.estimate_memory[0], BENCH_ESTIMATES,
+    dig_ring_init(&b->wires.handoffs.estimates, sizeof b->wires.estimate_memory[0], BENCH_ESTIMATES,
                   b->wires.estimate_memory);
     for (int i = 0; i < 2; i++) {
         b->buffer[i] = calloc(1, dig_recorded_dig_size());
         assert_non_null(b->buffer[i]);
-        (void)dig_ring_push(&b->wires.spares, &b->buffer[i]);
+        (void)dig_ring_push(&b->wires.handoffs.spares, &b->buffer[i]);
     }
     const struct dig_loop_settings settings = wires_loop_settings(&b->cube.set);
-    const struct dig_loop_ports    ports    = wires_loop_ports(&b->wires);
-    dig_loop_init(&b->loop, &settings, &ports, b->estimator);
+    dig_loop_init(&b->loop, &settings, &b->wires.handoffs, b->estimator);
     return b;
 }
 
@@ -123,7 +122,7 @@ static inline struct dig_reading bench_still(const int64_t time_ns)
 static inline struct dig_tick_status bench_tick_status(struct bench *const b)
 {
     struct dig_tick_status tick_status = { 0 };
-    assert_true(dig_latest_take(&b->wires.tick_status, &tick_status));
+    assert_true(dig_latest_take(&b->wires.handoffs.tick_status, &tick_status));
     return tick_status;
 }
 
@@ -135,9 +134,9 @@ static inline int outlooks_in_the_air(struct bench *const b, const int64_t from_
     struct dig_prediction_record predictions;
     for (int64_t i = 0; i < 400; i++) {
         const struct dig_reading r = bench_still((from_ms + i * 5) * MS);
-        assert_true(dig_ring_push(&b->wires.readings, &r));
+        assert_true(dig_ring_push(&b->wires.handoffs.readings, &r));
         dig_loop_tick(&b->loop, (from_ms + 1 + i * 5) * MS);
-        if (dig_latest_take(&b->wires.predictions, &predictions)) {
+        if (dig_latest_take(&b->wires.handoffs.predictions, &predictions)) {
             outlooks++;
             assert_true(predictions.prediction.valid);
             assert_int_equal(predictions.state, DIG_PREDICTION_VALID);

@@ -58,7 +58,7 @@ static void tell(struct bench *const b, const struct dig_pose pose, const double
     e.trajectory          = trajectory;
     e.progress            = progress;
     dig_live_recording_add(&b->live, b->set, WIRES_LAMBDA, &e);
-    (void)dig_ring_push(&b->wires.estimates, &e);
+    (void)dig_ring_push(&b->wires.handoffs.estimates, &e);
     (void)dig_fit_once(&b->fit);
 }
 
@@ -91,7 +91,7 @@ static void end_dig(struct bench *const b, const enum made_trajectory which, con
     if (recorded) {
         *b->buffer           = b->live.recording;
         b->buffer->dig_count = b->digs_done + 1;
-        (void)dig_ring_push(&b->wires.digs, &b->buffer);
+        (void)dig_ring_push(&b->wires.handoffs.digs, &b->buffer);
     }
     b->digs_done++;
     tell(b, dig_trajectory_pose(&t, 1e3), 0.0, DIG_PHASE_AIR, -1, (double)NAN);
@@ -108,7 +108,7 @@ static int results(struct bench *const b, struct dig_gravel_track *const first,
 {
     int                   n = 0;
     struct dig_fit_result result;
-    while (dig_ring_pop(&b->wires.results, &result)) {
+    while (dig_ring_pop(&b->wires.handoffs.results, &result)) {
         *first = n == 0 ? result.track : *first;
         *last  = result.track;
         n++;
@@ -122,7 +122,7 @@ TEST(a_dig_is_matched_while_it_goes_on)
     struct dig_gravel_track first, last;
     dig_until(b, MADE_SIMPLE_A, 0.33, 2.0);
     assert_int_equal(results(b, &first, &last), 0);
-    assert_null(dig_latest_look(&b->wires.basis));
+    assert_null(dig_latest_look(&b->wires.handoffs.basis));
     dig_until(b, MADE_SIMPLE_A, 0.9, 2.0);
     const int n = results(b, &first, &last);
     assert_true(n >= 4 && n <= 6);
@@ -137,7 +137,7 @@ TEST(a_dig_is_matched_while_it_goes_on)
     assert_true(first.expires_ns - first.time_ns == 30000000000LL);
 
     // Nothing else is known: it is predicted from, but not kept.
-    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.handoffs.basis);
     assert_non_null(basis);
     assert_true(basis->known && basis->forecast.expected[MADE_ACTUAL].valid);
     assert_true(basis->expires_ns == last.expires_ns);
@@ -196,13 +196,13 @@ TEST(a_dig_broken_off_takes_it_back)
         assert_int_equal(results(b, &first, &last), 1);
         assert_true(!last.valid && !last.going_on);
         assert_string_equal(last.wanted, "the simple dig cannot be matched: dig a simple dig");
-        const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+        const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.handoffs.basis);
         assert_non_null(basis);
         assert_false(basis->known);
         assert_false(b->fit.track.any);
         if (lost == 0) {
             struct dig_recorded_dig *buffer;
-            assert_true(dig_ring_pop(&b->wires.spares, &buffer));
+            assert_true(dig_ring_pop(&b->wires.handoffs.spares, &buffer));
         }
     }
     bench_destroy(b);
@@ -218,12 +218,12 @@ TEST(what_is_known_is_still_predicted_from)
     const struct dig_gravel_track before = b->fit.track;
     assert_true(before.valid);
     (void)results(b, &first, &last);
-    (void)dig_latest_look(&b->wires.basis);
+    (void)dig_latest_look(&b->wires.handoffs.basis);
 
     dig_until(b, MADE_SIMPLE_A, 0.5, 2.0);
     assert_true(results(b, &first, &last) >= 1);
     assert_true(last.going_on && last.valid);
-    assert_null(dig_latest_look(&b->wires.basis));
+    assert_null(dig_latest_look(&b->wires.handoffs.basis));
     end_dig(b, MADE_SIMPLE_A, false);
     assert_int_equal(results(b, &first, &last), 1);
     assert_true(last.valid && !last.going_on && last.time_ns == before.time_ns);

@@ -69,7 +69,7 @@ static void tell(struct bench *const b, const struct dig_pose pose, const double
         e.trajectory = ACTUAL;
         e.progress   = progress;
     }
-    (void)dig_ring_push(&b->wires.estimates, &e);
+    (void)dig_ring_push(&b->wires.handoffs.estimates, &e);
     (void)dig_fit_once(&b->fit);
 }
 
@@ -102,7 +102,7 @@ static void end_dig(struct bench *const b)
 
 static struct dig_expected offered(struct bench *const b)
 {
-    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.handoffs.basis);
     assert_non_null(basis);
     assert_true(basis->known);
     return basis->forecast.expected[ACTUAL];

@@ -23,12 +23,12 @@ TEST(ground_that_changed_is_no_longer_known)
         assert_true((b->fit.track.drift > 3.0) == (factor[i] > 1.0));
         assert_true(b->fit.track.valid == (i < 3));
     }
-    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.handoffs.basis);
     assert_non_null(basis);
     assert_false(basis->known);
     assert_true(basis->expires_ns > 0);
     struct dig_fit_result result;
-    while (dig_ring_pop(&b->wires.results, &result)) {
+    while (dig_ring_pop(&b->wires.handoffs.results, &result)) {
     }
     assert_false(result.track.valid);
     assert_string_equal(result.track.wanted, "the ground has changed: dig a simple dig");
@@ -53,7 +53,7 @@ static double drift_of(struct bench *const b, const int gravel, const double fac
     const double          drift = b->fit.track.drift;
     struct dig_fit_result result;
     b->fit.track = before;
-    while (dig_ring_pop(&b->wires.results, &result)) {
+    while (dig_ring_pop(&b->wires.handoffs.results, &result)) {
     }
     return drift;
 }
@@ -90,7 +90,7 @@ TEST(a_simple_dig_that_differs_is_doubted_first)
     assert_true(drift_of(b, 5, factor) < 6.0);
     struct dig_fit_result result;
     bench_dig(b, 5, 0, factor);
-    while (dig_ring_pop(&b->wires.results, &result)) {
+    while (dig_ring_pop(&b->wires.handoffs.results, &result)) {
     }
     assert_true(result.track.valid);
     assert_int_equal(result.track.match.digs, 3);
@@ -140,12 +140,12 @@ TEST(a_gravel_that_is_too_old_is_no_longer_known)
     bench_dig(b, 3, 0, 1.0);
     assert_false(dig_fit_once(&b->fit));
     assert_true(b->fit.track.valid);
-    (void)dig_latest_look(&b->wires.basis);
+    (void)dig_latest_look(&b->wires.handoffs.basis);
     const struct timespec pause = { .tv_nsec = 60000000L };
     (void)nanosleep(&pause, NULL);
     assert_false(dig_fit_once(&b->fit));
     assert_false(b->fit.track.valid);
-    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.basis);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&b->wires.handoffs.basis);
     assert_non_null(basis);
     assert_false(basis->known);
     free(b);

@@ -35,7 +35,7 @@ TEST(what_is_known_survives_in_its_file)
         assert_close(k->match.gravel.value[a], before.match.gravel.value[a],
                      1e-8 * before.match.gravel.value[a]);
     }
-    const struct dig_prediction_basis *const basis = dig_latest_look(&again->wires.basis);
+    const struct dig_prediction_basis *const basis = dig_latest_look(&again->wires.handoffs.basis);
     assert_non_null(basis);
     assert_true(basis->known && basis->forecast.expected[0].valid);
 
@@ -62,8 +62,8 @@ TEST(what_is_known_survives_in_its_file)
         dig_fit_restore(&other->fit);
         struct dig_log_line note = { "" };
         assert_false(other->fit.track.any);
-        assert_null(dig_latest_look(&other->wires.basis));
-        assert_true(dig_latest_take(&other->wires.log, &note));
+        assert_null(dig_latest_look(&other->wires.handoffs.basis));
+        assert_true(dig_latest_take(&other->wires.handoffs.fit_log, &note));
         assert_non_null(strstr(note.text, bad[i].expected));
         free(other);
     }
@@ -227,7 +227,7 @@ TEST(a_file_that_cannot_be_written_is_said_and_the_match_stands)
     bench_dig(b, 6, 0, 1.0);
     struct dig_log_line note = { "" };
     assert_true(b->fit.track.valid);
-    assert_true(dig_latest_take(&b->wires.log, &note));
+    assert_true(dig_latest_take(&b->wires.handoffs.fit_log, &note));
     assert_non_null(strstr(note.text, "/dev/full"));
     free(b);
 }

@@ -195,22 +195,24 @@ TEST(the_running_loop_takes_no_memory_no_lock_and_says_nothing)
     for (int64_t i = 0; i < 3000; i++) {
         struct dig_reading r = bench_still((1000 + i * 5) * MS);
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += i % 600 > 400 ? 15e6 : 0.0;
-        while (!dig_ring_push(&b->wires.readings, &r)) {
+        while (!dig_ring_push(&b->wires.handoffs.readings, &r)) {
             (void)nanosleep(&pause, NULL);
         }
         if (i % 100 == 0) {
-            bench_set_basis(b, &b->wires.basis, 3, atomic_load(&b->loop.generation), INT64_MAX);
+            bench_set_basis(b, &b->wires.handoffs.basis, 3, atomic_load(&b->loop.generation),
+                            INT64_MAX);
         }
         if (i % 700 == 0) {
-            bench_set_basis(b, &b->wires.table, 5, atomic_load(&b->loop.generation) + 1, INT64_MAX);
+            bench_set_basis(b, &b->wires.handoffs.table, 5, atomic_load(&b->loop.generation) + 1,
+                            INT64_MAX);
         }
         struct dig_recorded_dig *raw = NULL;
-        if (dig_ring_pop(&b->wires.digs, &raw)) {
+        if (dig_ring_pop(&b->wires.handoffs.digs, &raw)) {
             digs++;
-            assert_true(dig_ring_push(&b->wires.spares, &raw));
+            assert_true(dig_ring_push(&b->wires.handoffs.spares, &raw));
         }
         struct dig_record record;
-        while (i % 10 == 0 && dig_ring_pop(&b->wires.records, &record)) {
+        while (i % 10 == 0 && dig_ring_pop(&b->wires.handoffs.records, &record)) {
         }
         if (i % 3 == 0) {
             (void)nanosleep(&pause, NULL);
@@ -228,7 +230,7 @@ TEST(the_running_loop_takes_no_memory_no_lock_and_says_nothing)
             fail_msg("system call %d in the loop", atomic_load(&trapped_number));
         }
     }
-    for (struct dig_recorded_dig *raw; dig_ring_pop(&b->wires.digs, &raw);) {
+    for (struct dig_recorded_dig *raw; dig_ring_pop(&b->wires.handoffs.digs, &raw);) {
         digs++;
     }
     assert_true(digs > 1);

@@ -23,15 +23,15 @@ TEST(a_table_is_exchanged_with_the_forecast_that_belongs_to_it)
 {
     struct bench *const b                        = bench_create();
     bool                seen[DIG_TRAJECTORY_MAX] = { false };
-    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX);
+    bench_set_basis(b, &b->wires.handoffs.basis, 3, 1, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 1000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 1);
-    bench_set_basis(b, &b->wires.table, 5, 2, INT64_MAX);
+    bench_set_basis(b, &b->wires.handoffs.table, 5, 2, INT64_MAX);
     assert_in_range(outlooks_in_the_air(b, 3000, seen), 3, 5);
     assert_int_equal(atomic_load(&b->loop.generation), 2);
     assert_int_equal(bench_tick_status(b).generation, 2);
     assert_close(b->loop.published.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
-    bench_set_basis(b, &b->wires.basis, 3, 1, INT64_MAX); // late: of the table before
+    bench_set_basis(b, &b->wires.handoffs.basis, 3, 1, INT64_MAX); // late: of the table before
     assert_in_range(outlooks_in_the_air(b, 5000, seen), 3, 5);
     assert_close(b->loop.published.prediction.peak_Nm, peak_told_of(b, 5), 1e-9);
     assert_true(fabs(peak_told_of(b, 3) / peak_told_of(b, 5) - 1.0) > 0.1);
@@ -71,7 +71,7 @@ static double moment_after_Nm(struct bench *const b, int64_t *const at_ms, const
     for (int i = 0; i < ticks; i++) {
         struct dig_reading r = bench_still(*at_ms * MS);
         r.value[DIG_SIGNAL_BUCKET_HEAD_Pa] += push_Pa;
-        assert_true(dig_ring_push(&b->wires.readings, &r));
+        assert_true(dig_ring_push(&b->wires.handoffs.readings, &r));
         dig_loop_tick(&b->loop, (*at_ms + 1) * MS);
         *at_ms += 5;
     }
@@ -87,7 +87,7 @@ static void offer_machine(struct bench *const b, const struct dig_correction *co
     made->set        = &b->cube.set;
     made->generation = generation;
     assert_int_equal(dig_correction_apply(&b->machine, by, &made->machine), DIG_OK);
-    dig_latest_put(&b->wires.table, made);
+    dig_latest_put(&b->wires.handoffs.table, made);
     free(made);
 }
 

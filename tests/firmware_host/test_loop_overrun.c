@@ -143,7 +143,7 @@ static void readings_of_a_gap(const int beat)
 {
     for (int64_t i = 0; beat == 20 && i < 10; i++) {
         const struct dig_reading r = bench_still(fake.now_ns - (10 - i) * PERIOD);
-        assert_true(dig_ring_push(&bench->wires.readings, &r));
+        assert_true(dig_ring_push(&bench->wires.handoffs.readings, &r));
     }
 }
 
@@ -155,10 +155,10 @@ TEST(readings_wait_for_a_late_tick_and_keep_their_own_time)
     run();
     struct dig_record record;
     for (int64_t i = 0; i < 10; i++) {
-        assert_true(dig_ring_pop(&bench->wires.records, &record));
+        assert_true(dig_ring_pop(&bench->wires.handoffs.records, &record));
         assert_int_equal(record.sample.time_ns, fake.start_ns[20] - (10 - i) * PERIOD);
     }
-    assert_false(dig_ring_pop(&bench->wires.records, &record));
+    assert_false(dig_ring_pop(&bench->wires.handoffs.records, &record));
     assert_int_equal(bench->loop.tick_status.overruns, 1);
     assert_int_equal(bench->loop.tick_status.lost, 0);
     bench_destroy(bench);
