@@ -1,15 +1,16 @@
 // digwatch: what digsightd knows, in a terminal, live or from a log.
 
+#include "core/command_line.h"
 #include "core/name.h"
 #include "core/streams.h"
 #include "tools/digwatch/model.h"
-#include "tools/digwatch/options.h"
 #include "tools/digwatch/prometheus.h"
 #include "tools/digwatch/screen.h"
 #include "tools/digwatch/source.h"
 #include "tools/digwatch/terminal.h"
 
 #include <errno.h>
+#include <getopt.h>
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
@@ -21,6 +22,65 @@
 
 #define FRAME_s 0.1 // between two pictures
 #define WRITE_s 1.0 // between two files of --prometheus
+
+struct options {
+    const char *url, *log, *prometheus; // log, prometheus: NULL for none
+    double      speed;
+    bool        ascii;
+};
+
+#define INTO(field) DIG_INTO(struct options, field)
+
+static const struct dig_option known[] = {
+    { "lcm-url", "URL", NULL, "the daemon's lcm url (default udpm://239.255.76.67:7667?ttl=0)",
+      INTO(url) },
+    { "log", "LOG.lcm", NULL, "play a log of lcm-logger instead", INTO(log) },
+    { "speed", "X", NULL,
+      "X times as fast as it was logged, 0.01 to 10000 (default 1); a pause of more than 10 s "
+      "takes 10 s",
+      INTO(speed), 0.01, 1e4 },
+    { "ascii", NULL, NULL,
+      "no braille and no shades, for terminals without UTF-8 (found by itself)", INTO(ascii) },
+    { "prometheus", "FILE.prom", NULL,
+      "write health once a second in Prometheus' text format, for node_exporter's textfile "
+      "collector, instead of showing it; SIGTERM ends it",
+      INTO(prometheus) },
+};
+
+static const struct dig_program program = {
+    .self = { "digwatch", "[--lcm-url URL] [OPTION]...\n--log LOG.lcm [OPTION]...",
+              "Shows in a terminal what digsightd measures, identifies and predicts.",
+              "And what is wrong: live from LCM, or from a log. q ends it. Shown are advice, not a "
+              "safety function. NO_COLOR=1 leaves colours out.",
+              "digwatch\n"
+              "digwatch --log day.lcm --speed 10\n"
+              "digwatch --prometheus /var/lib/prometheus/node-exporter/digsight.prom\n" },
+    .exit_status =
+        "0  done\n1  the work failed\n2  bad usage, a log that is none, or no terminal\n",
+    .options = sizeof known / sizeof known[0],
+    .option  = known,
+};
+
+static enum dig_status parse(const int argc, char *argv[], struct options *const o,
+                             struct dig_error *const error)
+{
+    if (dig_options_read(&program, argc, argv, o, error) == NULL) {
+        return DIG_EINVAL;
+    }
+    if (optind < argc) {
+        return dig_error_set(error, DIG_EINVAL, "%s: expected options alone (a log: --log %s)",
+                             argv[optind], argv[optind]);
+    }
+    if ((o->log != NULL && (o->url != NULL || o->prometheus != NULL)) ||
+        (o->log == NULL && o->speed > 0.0)) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "expected --speed with --log, and --log without --lcm-url and "
+                             "--prometheus");
+    }
+    o->speed = o->speed > 0.0 ? o->speed : 1.0;
+    o->url   = o->url != NULL ? o->url : "udpm://239.255.76.67:7667?ttl=0";
+    return DIG_OK;
+}
 
 static volatile sig_atomic_t stopped;
 
@@ -64,8 +124,7 @@ static bool wait_until(const struct watch *const w, const double due_s, const bo
     return n < 0 ? errno == EINTR : (fd[1].revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
 }
 
-static void show(const struct watch *const w, const struct digwatch_options *const options,
-                 const bool ascii)
+static void show(const struct watch *const w, const struct options *const options, const bool ascii)
 {
     static struct digwatch_grid grid;
     char                        source[160];
@@ -89,7 +148,7 @@ static void show(const struct watch *const w, const struct digwatch_options *con
     digwatch_terminal_show(&grid);
 }
 
-static enum dig_status watch(struct watch *const w, const struct digwatch_options *const options,
+static enum dig_status watch(struct watch *const w, const struct options *const options,
                              struct dig_error *const error)
 {
     bool            utf8   = false;
@@ -134,12 +193,12 @@ static enum dig_status write_health(struct watch *const w, const char *const pat
 
 int main(const int argc, char *argv[])
 {
-    static struct watch     w;
-    struct digwatch_options options = { .url = NULL };
-    struct dig_error        error   = { "" };
+    static struct watch w;
+    struct options      options = { .speed = 0.0 };
+    struct dig_error    error   = { "" };
     dig_streams_begin();
-    if (digwatch_parse(argc, argv, &options, &error) != DIG_OK) {
-        (void)fprintf(stderr, "digwatch: %s\nTry digwatch --help.\n", error.text);
+    if (parse(argc, argv, &options, &error) != DIG_OK) {
+        dig_options_refuse(&program, NULL, error.text, stderr);
         return 2;
     }
     const int              ends[] = { SIGINT, SIGTERM, SIGHUP, SIGQUIT };

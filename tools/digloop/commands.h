@@ -14,8 +14,8 @@
 #define DIGLOOP_PATH_SIZE 1024
 
 struct digloop_options {
-    const char         *command, *table; // check: the machine's file
-    int                 recordings;      // or campaign folders: what stands after the table
+    const char         *table;      // check: the machine's file
+    int                 recordings; // or campaign folders: what stands after the table
     char              **recording;
     const char         *machine, *model, *trajectory;    // identify, predict
     const char         *identified, *out, *measured;     // predict
@@ -25,24 +25,12 @@ struct digloop_options {
     bool                json, quiet;
 };
 
-/// Reads the command line; prints help or version and exits where asked to. *error says what is
-/// wrong with it.
-DIG_MUST_CHECK enum dig_status
-digloop_parse(int argc, char *argv[], struct digloop_options *options, struct dig_error *error);
-
-/// What is wrong with the command line, whose first word is word, to stderr; what to exit with.
-int digloop_refuse(const char *word, const struct dig_error *error);
-
 /// What a command goes by: its options, the table, and the machine of --machine.
 struct digloop_job {
     const struct digloop_options *options;
     struct dig_curve_set         *set;
     const struct digloop_machine *machine; // tools/digloop/recording.h; NULL: no --machine
 };
-
-/// The index of --trajectory in the set. DIG_EINVAL names it when there is none.
-DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_job *job,
-                                                       int *trajectory, struct dig_error *error);
 
 DIG_MUST_CHECK enum dig_status digloop_identify(const struct digloop_job *job,
                                                 struct dig_error         *error);

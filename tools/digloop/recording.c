@@ -3,6 +3,7 @@
 #include "closed_loop/recordings/observe.h"
 #include "closed_loop/recordings/saturation.h"
 #include "core/sample.h"
+#include "core/text.h"
 #include "estimator/approach/approach_slots.h"
 #include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
@@ -211,5 +212,22 @@ enum dig_status digloop_read_digs(const struct digloop_job *const job, const cha
     }
     read.digs = kept;
     *digs     = read;
+    return DIG_OK;
+}
+
+enum dig_status digloop_find_trajectory(const struct digloop_job *const job, int *const trajectory,
+                                        struct dig_error *const error)
+{
+    const int found = dig_curve_set_find(job->set, job->options->trajectory);
+    if (found < 0) {
+        char names[256] = "";
+        for (size_t t = 0; t < job->set->trajectories; t++) {
+            dig_text_list(sizeof names, names, job->set->trajectory[t].name);
+        }
+        return dig_error_set(error, DIG_EINVAL,
+                             "--trajectory %s: no such trajectory, expected one of %s: %s",
+                             job->options->trajectory, job->options->table, names);
+    }
+    *trajectory = found;
     return DIG_OK;
 }

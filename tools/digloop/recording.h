@@ -44,6 +44,10 @@ DIG_MUST_CHECK enum dig_status digloop_load_machine(const struct digloop_job *jo
                                                     struct digloop_machine   *machine,
                                                     struct dig_error         *error);
 
+/// The index of --trajectory in the set. DIG_EINVAL names it when there is none.
+DIG_MUST_CHECK enum dig_status digloop_find_trajectory(const struct digloop_job *job,
+                                                       int *trajectory, struct dig_error *error);
+
 /// The digs of a file: one of a force recording, all that followed a trajectory of a machine's.
 /// trajectory: only those along it, or -1. DIG_ENOMATCH names the file when there is none;
 /// DIG_EINVAL for a machine's recording without a machine (NULL). Free with
