@@ -24,7 +24,7 @@ tools         core files tables estimator offline_dem closed_loop firmware_host 
 rooms='
 core                   approach bed bed_plan chance command_line contact curve did_you_mean effect entry_set error
                        geometry gravel_match ground linkage log_normal machine markup model name observation outline part process
-                       recording regular sample scene sha256 shell similar sort status streams table_step text units vec2
+                       recording regular room sample scene sha256 shell similar sort status streams table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve

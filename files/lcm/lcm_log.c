@@ -1,6 +1,7 @@
 #include "files/lcm/lcm_log.h"
 
 #include "core/regular.h"
+#include "core/room.h"
 #include "files/lcm/lcm_layout.h"
 #include "messages/digsight_sample_t.h"
 
@@ -173,37 +174,29 @@ static enum dig_status refuse_message(const struct dig_lcm_log *const log,
 #define TIME_MOST_ns ((int64_t)1 << 62) // of which differences can be taken
 #define ROWS_MAX     ((size_t)1 << 25)  // nine hours at a kilohertz
 
-struct rows {
-    size_t             count, room;
-    struct dig_sample *row;
-};
-
 // As many as samples had before there were force sensors; what came after is added at the end.
 static const int32_t least_signals = DIG_SIGNAL_TEMPERATURE_degC + 1;
 
 // A message as the next row.
-static enum dig_status add_row(struct rows *const rows, const digsight_sample_t *const message,
-                               const char *const path, struct dig_error *const error)
+static enum dig_status add_row(struct dig_machine_recording *const to,
+                               const digsight_sample_t *const message, const char *const path,
+                               struct dig_error *const error)
 {
-    if (rows->count >= ROWS_MAX) {
+    if (to->rows >= ROWS_MAX) {
         return dig_error_set(error, DIG_EINVAL, "%s: more than %zu samples, expected fewer", path,
                              ROWS_MAX);
     }
-    if (rows->count == rows->room) {
-        const size_t             room  = rows->room == 0 ? 1024 : 2 * rows->room;
-        struct dig_sample *const grown = realloc(rows->row, room * sizeof *grown);
-        if (grown == NULL) {
-            return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
-        }
-        rows->row  = grown;
-        rows->room = room;
+    struct dig_sample *const grown = dig_room(to->row, to->rows, sizeof *grown);
+    if (grown == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
     }
+    to->row                  = grown;
     struct dig_sample sample = { .time_ns = message->time_ns };
     for (int i = 0; i < message->signals; i++) {
         sample.valid[i] = message->valid[i] != 0 && isfinite(message->value[i]);
         sample.value[i] = sample.valid[i] ? message->value[i] : 0.0;
     }
-    rows->row[rows->count++] = sample;
+    to->row[to->rows++] = sample;
     return DIG_OK;
 }
 
@@ -211,8 +204,8 @@ static enum dig_status take_sample(void *const context, const struct dig_lcm_log
                                    const struct dig_lcm_event *const event,
                                    struct dig_error *const           error)
 {
-    struct rows *const rows = context;
-    digsight_sample_t  message;
+    struct dig_machine_recording *const to = context;
+    digsight_sample_t                   message;
     if (strcmp(event->channel, "DIGSIGHT_SAMPLE") != 0) {
         return DIG_OK;
     }
@@ -229,9 +222,9 @@ static enum dig_status take_sample(void *const context, const struct dig_lcm_log
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: event %" PRIu64 ": time_ns %" PRId64 ", expected 0 to 2^62",
                                log->path, event->number, message.time_ns);
-    } else if (rows->count == 0 || message.time_ns > rows->row[rows->count - 1].time_ns) {
+    } else if (to->rows == 0 || message.time_ns > to->row[to->rows - 1].time_ns) {
         // Else a repetition, or a second daemon's: a recording ascends.
-        status = add_row(rows, &message, log->path, error);
+        status = add_row(to, &message, log->path, error);
     }
     digsight_sample_t_decode_cleanup(&message);
     return status;
@@ -242,22 +235,22 @@ enum dig_status dig_lcm_log_read(const char *const                   path,
                                  struct dig_error *const             error)
 {
     assert(path != NULL && recording != NULL);
-    struct rows     rows   = { 0 };
-    enum dig_status status = dig_lcm_log_walk(path, take_sample, &rows, error);
-    if (status == DIG_OK && rows.count < 2) {
+    struct dig_machine_recording read   = { .rows = 0 };
+    enum dig_status              status = dig_lcm_log_walk(path, take_sample, &read, error);
+    if (status == DIG_OK && read.rows < 2) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: %zu samples on DIGSIGHT_SAMPLE, expected at least 2", path,
-                               rows.count);
+                               read.rows);
     }
-    if (status != DIG_OK || rows.row == NULL) {
-        free(rows.row);
+    if (status != DIG_OK || read.row == NULL) {
+        dig_machine_recording_finish(&read);
         return status;
     }
-    const int64_t start_ns = rows.row[0].time_ns;
-    for (size_t i = 0; i < rows.count; i++) {
-        rows.row[i].time_ns -= start_ns;
+    const int64_t start_ns = read.row[0].time_ns;
+    for (size_t i = 0; i < read.rows; i++) {
+        read.row[i].time_ns -= start_ns;
     }
-    *recording = (struct dig_machine_recording){ .rows = rows.count, .row = rows.row };
+    *recording = read;
     return DIG_OK;
 }
 

@@ -4,6 +4,7 @@
 #include "files/text/csv.h"
 
 #include "core/regular.h"
+#include "core/room.h"
 #include "core/text.h"
 #include "files/text/whole.h"
 
@@ -29,7 +30,6 @@ struct reader {
     const char                  *header[FIELDS_MAX];      // its fields
     size_t                       at[DIG_CSV_COLUMNS_MAX]; // which of them a column is
     struct dig_csv               csv;
-    size_t                       room; // rows allocated
 };
 
 // Cuts the next line off *rest, without its end; NULL at the end of the text.
@@ -131,33 +131,21 @@ static enum dig_status read_header(struct reader *const r, char *const line)
 
 static enum dig_status make_room(struct reader *const r)
 {
-    if (r->csv.rows < r->room) {
-        return DIG_OK;
+    struct dig_csv *const csv = &r->csv;
+    if (csv->rows >= ROWS_MAX) {
+        return dig_error_set(r->error, DIG_EINVAL, "%s:%d: a row after %zu others, expected fewer",
+                             r->path, r->line, ROWS_MAX);
     }
-    if (r->room >= ROWS_MAX) {
-        (void)dig_error_set(r->error, DIG_EINVAL, "%s:%d: a row after %zu others, expected fewer",
-                            r->path, r->line, ROWS_MAX);
-        return DIG_EINVAL;
-    }
-    const size_t  room  = r->room == 0 ? 1024 : r->room * 2;
-    double *const value = realloc(r->csv.value, room * r->columns * sizeof *value);
-    if (value != NULL) {
-        r->csv.value = value;
-    }
-    int *const line = realloc(r->csv.line, room * sizeof *line);
-    if (line != NULL) {
-        r->csv.line = line;
-    }
-    const char **const word = realloc(r->csv.word, room * sizeof *word);
-    if (word != NULL) {
-        r->csv.word = word;
-    }
-    if (value == NULL || line == NULL || word == NULL) {
-        (void)dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path, room);
-        return DIG_ENOMEM;
-    }
-    r->room = room;
-    return DIG_OK;
+    double *const      value = dig_room(csv->value, csv->rows, r->columns * sizeof *value);
+    int *const         line  = dig_room(csv->line, csv->rows, sizeof *line);
+    const char **const word  = dig_room(csv->word, csv->rows, sizeof *word);
+    csv->value               = value != NULL ? value : csv->value;
+    csv->line                = line != NULL ? line : csv->line;
+    csv->word                = word != NULL ? word : csv->word;
+    return value != NULL && line != NULL && word != NULL
+               ? DIG_OK
+               : dig_error_set(r->error, DIG_ENOMEM, "%s: no memory for %zu rows", r->path,
+                               csv->rows);
 }
 
 static enum dig_status read_row(struct reader *const r, char *const line)

@@ -1,5 +1,6 @@
 #include "firmware_host/bus/dbc.h"
 
+#include "core/room.h"
 #include "core/text.h"
 #include "files/text/whole.h"
 
@@ -28,13 +29,6 @@ static enum dig_status refuse(const struct cursor *const cursor, const char *con
 {
     return dig_error_set(cursor->error, DIG_EINVAL, "%s:%d: \"%.60s\", expected %s", cursor->path,
                          cursor->line, found, expected);
-}
-
-// Room for one more: arrays double.
-static void *grow(void *const array, const size_t count, const size_t size)
-{
-    const bool full = count == 0 || (count >= 8 && (count & (count - 1)) == 0);
-    return full ? realloc(array, size * (count == 0 ? 8 : 2 * count)) : array;
 }
 
 // BO_ 2566879720 Pressure_1: 8 Machine
@@ -67,7 +61,7 @@ static enum dig_status read_message(const struct cursor *const cursor, const cha
     if (dig_dbc_find(dbc, name) != NULL) {
         return refuse(cursor, name, "every message once");
     }
-    struct dig_dbc_message *const grown = grow(dbc->message, dbc->messages, sizeof *grown);
+    struct dig_dbc_message *const grown = dig_room(dbc->message, dbc->messages, sizeof *grown);
     if (grown == NULL) {
         return dig_error_set(cursor->error, DIG_ENOMEM, "%s: no memory", cursor->path);
     }
@@ -169,7 +163,7 @@ static enum dig_status read_signal(const struct cursor *const cursor, const char
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_dbc_signal *const grown = grow(dbc->signal, dbc->signals, sizeof *grown);
+    struct dig_dbc_signal *const grown = dig_room(dbc->signal, dbc->signals, sizeof *grown);
     if (grown == NULL) {
         return dig_error_set(cursor->error, DIG_ENOMEM, "%s: no memory", cursor->path);
     }

@@ -1,5 +1,6 @@
 #include "tools/digreport/shift.h"
 
+#include "core/room.h"
 #include "core/sort.h"
 #include "core/text.h"
 #include "files/lcm/lcm_log.h"
@@ -45,8 +46,7 @@ static void *with_room(struct digreport_shift *const shift, void *const array, c
         shift->left_out++;
         return NULL;
     }
-    const bool  full  = (n & (n + 1)) == 0; // it has room for 1, 3, 7, …
-    void *const grown = full ? realloc(array, (2 * n + 1) * size) : array;
+    void *const grown = dig_room(array, n, size);
     shift->status     = grown != NULL ? shift->status : DIG_ENOMEM;
     return grown;
 }

@@ -1,6 +1,7 @@
 #include "tools/digreport/shift_dig.h"
 
 #include "core/name.h"
+#include "core/room.h"
 #include "core/units.h"
 #include "estimator/track/phase.h"
 
@@ -112,15 +113,11 @@ static void finish_dig(struct digreport_dig_track *const t, struct digreport_dig
 static enum dig_status add_row(struct digreport_dig_track *const t,
                                const digsight_estimate_t *const  e)
 {
-    if (t->rows == t->room) {
-        const size_t                room  = t->room == 0 ? 4096 : 2 * t->room;
-        struct digreport_row *const grown = realloc(t->row, room * sizeof *grown);
-        if (grown == NULL) {
-            return DIG_ENOMEM;
-        }
-        t->row  = grown;
-        t->room = room;
+    struct digreport_row *const grown = dig_room(t->row, t->rows, sizeof *grown);
+    if (grown == NULL) {
+        return DIG_ENOMEM;
     }
+    t->row            = grown;
     t->row[t->rows++] = (struct digreport_row){
         .time_ns     = e->time_ns,
         .moment_Nm   = e->moment_Nm,

@@ -49,7 +49,7 @@ struct digreport_dig_track {
     bool                       open;
     int32_t                    dig_count; // digs finished before it
     struct digreport_dig       dig;
-    size_t                     rows, room;
+    size_t                     rows;
     struct digreport_row      *row;
     bool                       predicted;
     struct dig_predicted_curve prediction;

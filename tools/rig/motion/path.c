@@ -1,5 +1,6 @@
 #include "tools/rig/motion/path.h"
 
+#include "core/room.h"
 #include "core/units.h"
 #include "tools/rig/motion/blend.h"
 
@@ -23,32 +24,20 @@ static const double quintic_factor = 5.7735; // peak acceleration of a rest-to-r
 
 static const struct dig_rig_wrench none = { 0.0, 0.0, 0.0 };
 
-struct builder {
-    struct dig_rig_frame *frame;
-    size_t                frames;
-    size_t                room;
-};
-
 // Position and rate of the three coordinates of a pose, to start or end a move with.
 struct state {
     double at[3];
     double rate[3];
 };
 
-static bool push(struct builder *const builder, const struct dig_rig_frame *const frame)
+static bool push(struct dig_rig_path *const path, const struct dig_rig_frame *const frame)
 {
-    if (builder->frames == builder->room) {
-        const size_t                room = builder->room == 0 ? 16384 : 2 * builder->room;
-        struct dig_rig_frame *const grown =
-            realloc(builder->frame, room * sizeof builder->frame[0]);
-        if (grown == NULL) {
-            return false;
-        }
-        builder->frame = grown;
-        builder->room  = room;
+    struct dig_rig_frame *const grown = dig_room(path->frame, path->frames, sizeof *grown);
+    if (grown != NULL) {
+        path->frame                 = grown;
+        path->frame[path->frames++] = *frame;
     }
-    builder->frame[builder->frames++] = *frame;
-    return true;
+    return grown != NULL;
 }
 
 static struct dig_rig_pose pose_of(const double at[3])
@@ -79,7 +68,7 @@ static double duration_s(const struct state *const from, const struct state *con
 
 // Moves from `from` to `to` in about seconds: the polynomial of degree five that has both rates and
 // no acceleration at its ends. `from` itself is not emitted, `to` is.
-static bool move_in(struct builder *const builder, const struct state *const from,
+static bool move_in(struct dig_rig_path *const path, const struct state *const from,
                     const struct state *const to, const double seconds,
                     const struct dig_rig_wrench soil, const enum load load)
 {
@@ -101,30 +90,30 @@ static bool move_in(struct builder *const builder, const struct state *const fro
             .pose = pose_of(at),
             .soil = scaled(soil, load == LOAD_FADING ? left(s) : 1.0),
         };
-        if (!push(builder, &frame)) {
+        if (!push(path, &frame)) {
             return false;
         }
     }
     return true;
 }
 
-static bool move(struct builder *const builder, const struct state *const from,
+static bool move(struct dig_rig_path *const path, const struct state *const from,
                  const struct state *const to, const struct dig_rig_wrench soil,
                  const enum load load)
 {
-    return move_in(builder, from, to, duration_s(from, to), soil, load);
+    return move_in(path, from, to, duration_s(from, to), soil, load);
 }
 
 // The same with an empty bucket.
-static bool go(struct builder *const builder, const struct state *const from,
+static bool go(struct dig_rig_path *const path, const struct state *const from,
                const struct state *const to)
 {
-    return move(builder, from, to, none, LOAD_HELD);
+    return move(path, from, to, none, LOAD_HELD);
 }
 
-static bool hold(struct builder *const builder, const struct state *const at)
+static bool hold(struct dig_rig_path *const path, const struct state *const at)
 {
-    return move_in(builder, at, at, hold_s, none, LOAD_HELD);
+    return move_in(path, at, at, hold_s, none, LOAD_HELD);
 }
 
 // One row of a recording at machine scale, pin relative to the origin (rig coordinates).
@@ -153,7 +142,7 @@ static double between(const double a, const double b, const double s)
 }
 
 // The recording on the path's grid: its own poses and forces, straight between the rows.
-static bool replay(struct builder *const builder, const struct dig_recording *const recording,
+static bool replay(struct dig_rig_path *const path, const struct dig_recording *const recording,
                    const double lambda, const struct dig_force_row *const origin)
 {
     const double begin_s = sqrt(lambda) * recording->row[0].t_s;
@@ -178,7 +167,7 @@ static bool replay(struct builder *const builder, const struct dig_recording *co
             at[c] = between(a.at[c], b.at[c], s);
         }
         frame.pose = pose_of(at);
-        if (!push(builder, &frame)) {
+        if (!push(path, &frame)) {
             return false;
         }
     }
@@ -212,7 +201,7 @@ static struct state rest(const double X_m, const double Z_m, const double phi_ra
 
 // From wherever it hovers: dip and open, rise and curl, so that weights and frictions show in both
 // directions, then down to the contact with the dig's own speed.
-static bool approach(struct builder *const builder, const struct state *const contact,
+static bool approach(struct dig_rig_path *const path, const struct state *const contact,
                      const double tooth_m, struct state *const now)
 {
     const double       X_m   = contact->at[0];
@@ -221,20 +210,19 @@ static bool approach(struct builder *const builder, const struct state *const co
     const struct state hover = rest(X_m, Z_m + hover_teeth * tooth_m, phi - swing_rad);
     const struct state dip   = rest(X_m + 0.15 * tooth_m, Z_m + dip_teeth * tooth_m, phi);
 
-    const bool ok = (builder->frames == 0 || go(builder, now, &hover)) && hold(builder, &hover) &&
-                    go(builder, &hover, &dip) && go(builder, &dip, &hover) &&
-                    go(builder, &hover, contact);
+    const bool ok = (path->frames == 0 || go(path, now, &hover)) && hold(path, &hover) &&
+                    go(path, &hover, &dip) && go(path, &dip, &hover) && go(path, &hover, contact);
     if (ok) {
-        builder->frames--; // the recording's first row is the contact itself
+        path->frames--; // the recording's first row is the contact itself
     }
     return ok;
 }
 
 // Lift the load clear with the bucket as it stands, dump it, and move on empty.
-static bool leave(struct builder *const builder, const struct state *const end,
+static bool leave(struct dig_rig_path *const path, const struct state *const end,
                   const double ground_Z_m, const double tooth_m, struct state *const now)
 {
-    const struct dig_rig_wrench load = builder->frame[builder->frames - 1].soil;
+    const struct dig_rig_wrench load = path->frame[path->frames - 1].soil;
     const double       Z_m  = fmax(end->at[1] + 0.3 * tooth_m, ground_Z_m + clear_teeth * tooth_m);
     const double       phi  = end->at[2];
     const double       dump = fmax(dump_phi_rad, phi + dump_more_rad);
@@ -244,33 +232,34 @@ static bool leave(struct builder *const builder, const struct state *const end,
     const struct state lowered = rest(end->at[0], Z_m - 0.2 * tooth_m, dump - 0.5 * swing_rad);
 
     *now = lowered;
-    return move(builder, end, &lifted, load, LOAD_HELD) &&
-           move(builder, &lifted, &dumped, load, LOAD_FADING) && go(builder, &dumped, &curled) &&
-           go(builder, &curled, &lowered);
+    return move(path, end, &lifted, load, LOAD_HELD) &&
+           move(path, &lifted, &dumped, load, LOAD_FADING) && go(path, &dumped, &curled) &&
+           go(path, &curled, &lowered);
 }
 
 // Back to where the whole path began, so that it can be played in a loop.
-static bool go_home(struct builder *const builder, const struct state *const now)
+static bool go_home(struct dig_rig_path *const path, const struct state *const now)
 {
-    const struct dig_rig_pose home = builder->frame[0].pose;
+    const struct dig_rig_pose home = path->frame[0].pose;
     const struct state        to   = rest(home.X_m, home.Z_m, home.phi_rad);
-    return go(builder, now, &to) && hold(builder, &to);
+    return go(path, now, &to) && hold(path, &to);
 }
 
-static bool add_dig(struct builder *const builder, const struct dig_rig_path_options *const options,
-                    const struct dig_recording *const recording,
+static bool add_dig(struct dig_rig_path *const               path,
+                    const struct dig_rig_path_options *const options,
+                    const struct dig_recording *const        recording,
                     const struct dig_force_row *const origin, struct state *const now)
 {
     if (!options->air) {
-        return replay(builder, recording, options->lambda, origin);
+        return replay(path, recording, options->lambda, origin);
     }
     const struct state contact = end_state(recording, options->lambda, origin, false);
     const struct state end     = end_state(recording, options->lambda, origin, true);
     // A dig begins with the tooth on the ground: that is where the ground is.
     const double ground_Z_m = contact.at[1] + options->tooth_m * sin(contact.at[2]);
-    return approach(builder, &contact, options->tooth_m, now) &&
-           replay(builder, recording, options->lambda, origin) &&
-           leave(builder, &end, ground_Z_m, options->tooth_m, now);
+    return approach(path, &contact, options->tooth_m, now) &&
+           replay(path, recording, options->lambda, origin) &&
+           leave(path, &end, ground_Z_m, options->tooth_m, now);
 }
 
 enum dig_status dig_rig_path_build(const struct dig_rig_path_options *const options,
@@ -297,30 +286,27 @@ enum dig_status dig_rig_path_build(const struct dig_rig_path_options *const opti
         }
     }
 
-    struct builder builder = { .frame = NULL };
-    struct state   now     = rest(0.0, 0.0, 0.0);
-    bool           ok      = true;
-    for (size_t i = 0; i < recordings && ok; i++) {
-        ok = add_dig(&builder, options, &recording[i], &recording[0].row[0], &now);
-    }
-    if (ok && options->air) {
-        ok = go_home(&builder, &now);
-    }
-
-    struct dig_rig_path result = {
-        .frames          = builder.frames,
-        .frame           = builder.frame,
+    struct dig_rig_path made = {
         .contact_phi_rad = -0.5 * DIG_PI - recording[0].row[0].theta_deg * DIG_RAD_PER_DEG,
     };
+    struct state now = rest(0.0, 0.0, 0.0);
+    bool         ok  = true;
+    for (size_t i = 0; i < recordings && ok; i++) {
+        ok = add_dig(&made, options, &recording[i], &recording[0].row[0], &now);
+    }
+    if (ok && options->air) {
+        ok = go_home(&made, &now);
+    }
+
     if (ok && options->blend) {
-        ok = dig_rig_blend(&result);
+        ok = dig_rig_blend(&made);
     }
     if (!ok) {
-        free(builder.frame);
+        free(made.frame);
         return dig_error_set(error, DIG_ENOMEM, "the path of %zu recordings does not fit in memory",
                              recordings);
     }
-    *path = result;
+    *path = made;
     return DIG_OK;
 }
 
