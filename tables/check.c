@@ -153,10 +153,9 @@ static size_t count_holes(const struct dig_curve_set *const set)
 static enum dig_status count_builds(const struct dig_store *const store, size_t *const builds,
                                     struct dig_error *const error)
 {
-    sqlite3_stmt         *s = NULL;
-    const enum dig_status status =
-        dig_sql_first(store->db, store->path,
-                      "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)", &s, error);
+    sqlite3_stmt         *s      = NULL;
+    const enum dig_status status = dig_sql_first(
+        &store->db, "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)", &s, error);
     if (status == DIG_OK) {
         *builds = (size_t)sqlite3_column_int64(s, 0);
         (void)sqlite3_finalize(s);
@@ -171,9 +170,9 @@ static enum dig_status check_all(struct dig_store *const        store,
     struct dig_entry_set *all = NULL;
     struct dig_curve_set *set = NULL;
     enum dig_status       status =
-        dig_grounds_load(store->db, store->path, &store->head, DIG_GROUNDS_ALL, &all, error);
+        dig_grounds_load(&store->db, &store->head, DIG_GROUNDS_ALL, &all, error);
     if (status == DIG_OK) {
-        status = dig_sql_load(store->db, store->path, &store->head, &set, error);
+        status = dig_sql_load(&store->db, &store->head, &set, error);
     }
     struct scratch *const scratch = calloc(1, sizeof *scratch);
     double *const         packings =
@@ -210,10 +209,10 @@ enum dig_status dig_store_check(struct dig_store *const        store,
     assert(store != NULL && report != NULL);
 
     // One transaction: a writer may be adding runs.
-    enum dig_status status = dig_sql_run(store->db, store->path, "BEGIN", error);
+    enum dig_status status = dig_sql_run(&store->db, "BEGIN", error);
     if (status == DIG_OK) {
         status = check_all(store, report, error);
-        (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+        (void)sqlite3_exec(store->db.sql, "ROLLBACK", NULL, NULL, NULL);
     }
     return status;
 }

@@ -31,8 +31,7 @@
         DIG_EFFECTS_OF_SOIL(LISTED) "unlisted,', ',' || effect || ',')"
 
 struct loader {
-    const char           *path;
-    sqlite3              *db;
+    const struct dig_db  *db;
     struct dig_error     *error;
     const char           *where;
     struct dig_entry_set *into;
@@ -56,7 +55,7 @@ static enum dig_status prepare(const struct loader *const l, const char *const c
     char sql[800];
     (void)snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE %s %s", columns, from, l->where,
                    order);
-    return dig_sql_prepare(l->db, l->path, sql, s, l->error);
+    return dig_sql_prepare(l->db, sql, s, l->error);
 }
 
 static enum dig_status count_rows(const struct loader *const l, size_t *const rows)
@@ -64,10 +63,10 @@ static enum dig_status count_rows(const struct loader *const l, size_t *const ro
     sqlite3_stmt   *s      = NULL;
     enum dig_status status = prepare(l, "count(*)", "ground", "", &s);
     if (status == DIG_OK && sqlite3_step(s) != SQLITE_ROW) {
-        status = dig_sql_refuse(l->db, l->path, l->error);
+        status = dig_sql_refuse(l->db, l->error);
     }
     if (status == DIG_OK && sqlite3_column_int64(s, 0) > GROUNDS_MAX) {
-        status = dig_error_set(l->error, DIG_EINVAL, "%s: ground: more than %d rows", l->path,
+        status = dig_error_set(l->error, DIG_EINVAL, "%s: ground: more than %d rows", l->db->path,
                                GROUNDS_MAX);
     }
     if (status == DIG_OK) {
@@ -107,8 +106,8 @@ static enum dig_status read_ground(const struct loader *const l, sqlite3_stmt *c
         const double value     = sqlite3_column_double(s, a + 1);
         entry->gravel.value[a] = value;
         if (!isfinite(value) || value < 0.0) {
-            return dig_error_set(l->error, DIG_EINVAL, "%s: ground.%s: %g, expected >= 0", l->path,
-                                 dig_axis_name((enum dig_axis)a), value);
+            return dig_error_set(l->error, DIG_EINVAL, "%s: ground.%s: %g, expected >= 0",
+                                 l->db->path, dig_axis_name((enum dig_axis)a), value);
         }
     }
     const char *const effect = (const char *)sqlite3_column_text(s, DIG_AXES + 1);
@@ -118,7 +117,7 @@ static enum dig_status read_ground(const struct loader *const l, sqlite3_stmt *c
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: ground.effect: \"%.40s\" of magnitude %g, expected an effect "
                              "this program knows, of a finite one",
-                             l->path, effect != NULL ? effect : "", entry->magnitude);
+                             l->db->path, effect != NULL ? effect : "", entry->magnitude);
     }
     entry->effect   = effect[0] != '\0' ? (enum dig_effect_id)dig_effect_find(effect) : DIG_EFFECTS;
     entry->approach = (struct dig_approach){ sqlite3_column_double(s, DIG_AXES + 3),
@@ -126,7 +125,7 @@ static enum dig_status read_ground(const struct loader *const l, sqlite3_stmt *c
     if (!(entry->approach.depth > 0.0) || !isfinite(entry->approach.attack_rad)) {
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: ground.depth: %g, attack_rad: %g, expected > 0, and finite",
-                             l->path, entry->approach.depth, entry->approach.attack_rad);
+                             l->db->path, entry->approach.depth, entry->approach.attack_rad);
     }
     return DIG_OK;
 }
@@ -141,8 +140,8 @@ static enum dig_status read_grounds(const struct loader *const l)
     size_t i = 0;
     while (status == DIG_OK && i < l->into->entries) {
         if (sqlite3_step(s) != SQLITE_ROW) {
-            status =
-                dig_error_set(l->error, DIG_EINVAL, "%s: ground: fewer rows than counted", l->path);
+            status = dig_error_set(l->error, DIG_EINVAL, "%s: ground: fewer rows than counted",
+                                   l->db->path);
             break;
         }
         status = read_ground(l, s, &l->into->entry[i++]);
@@ -189,7 +188,7 @@ static enum dig_status read_entry(const struct loader *const l, sqlite3_stmt *co
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: entry: expected a ground and a trajectory of the table, "
                              "packings 1 to %d",
-                             l->path, PACKINGS_MAX);
+                             l->db->path, PACKINGS_MAX);
     }
     const size_t            entry = at * g->trajectories + (size_t)trajectory;
     struct dig_curve *const curve = &g->curve[entry];
@@ -197,7 +196,7 @@ static enum dig_status read_entry(const struct loader *const l, sqlite3_stmt *co
         (packings > 1 && !read_blob(s, 4, &curve->sd[0][0]))) {
         return dig_error_set(l->error, DIG_EINVAL,
                              "%s: entry.mean, entry.spread: expected %d finite float32 each",
-                             l->path, DIG_CHANNELS * DIG_CURVE_POINTS);
+                             l->db->path, DIG_CHANNELS * DIG_CURVE_POINTS);
     }
     g->packings[entry] = (int)packings;
     return DIG_OK;
@@ -210,20 +209,20 @@ static enum dig_status read_entries(const struct loader *const l)
         prepare(l, "ground, trajectory, packings, mean, spread",
                 "entry JOIN ground g ON g.id = entry.ground", "ORDER BY ground, trajectory", &s);
     size_t hint = 0;
-    while (dig_sql_row(s, l->path, &status, l->error)) {
+    while (dig_sql_row(l->db, s, &status, l->error)) {
         status = read_entry(l, s, &hint);
     }
     (void)sqlite3_finalize(s);
     return status;
 }
 
-enum dig_status dig_grounds_load(sqlite3 *const db, const char *const path,
+enum dig_status dig_grounds_load(const struct dig_db *const         db,
                                  const struct dig_table_head *const head,
                                  const enum dig_grounds_kind        kind,
                                  struct dig_entry_set **const       grounds,
                                  struct dig_error *const            error)
 {
-    struct loader   l      = { path, db, error, where_of(kind), NULL };
+    struct loader   l      = { db, error, where_of(kind), NULL };
     size_t          rows   = 0;
     enum dig_status status = count_rows(&l, &rows);
     if (status != DIG_OK) {
@@ -231,7 +230,7 @@ enum dig_status dig_grounds_load(sqlite3 *const db, const char *const path,
     }
     l.into = dig_grounds_create(head, rows);
     if (l.into == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", db->path);
     }
     status = read_grounds(&l);
     if (status == DIG_OK) {

@@ -22,7 +22,7 @@ struct dig_entry_set *dig_grounds_create(const struct dig_table_head *head, size
 
 /// Reads and checks them; there may be none. Call it in a transaction. Free with
 /// dig_entry_set_destroy().
-DIG_MUST_CHECK enum dig_status dig_grounds_load(sqlite3 *db, const char *path,
+DIG_MUST_CHECK enum dig_status dig_grounds_load(const struct dig_db         *db,
                                                 const struct dig_table_head *head,
                                                 enum dig_grounds_kind        kind,
                                                 struct dig_entry_set       **grounds,

@@ -118,31 +118,31 @@ static enum dig_status fill(struct dig_curve_set *const set, struct dig_entry_se
     return build_grid(set, path, error);
 }
 
-enum dig_status dig_sql_load(sqlite3 *const db, const char *const path,
-                             const struct dig_table_head *const head,
+enum dig_status dig_sql_load(const struct dig_db *const db, const struct dig_table_head *const head,
                              struct dig_curve_set **const set, struct dig_error *const error)
 {
     struct dig_curve_set *const made  = calloc(1, sizeof *made);
     struct dig_entry_set       *plain = NULL;
     if (made == NULL) {
-        return no_memory(path, error);
+        return no_memory(db->path, error);
     }
     copy_head(made, head);
-    enum dig_status status = dig_grounds_load(db, path, head, DIG_GROUNDS_PLAIN, &plain, error);
+    enum dig_status status = dig_grounds_load(db, head, DIG_GROUNDS_PLAIN, &plain, error);
     if (status == DIG_OK) {
-        status = dig_grounds_load(db, path, head, DIG_GROUNDS_APPROACHED, &made->approaches, error);
+        status = dig_grounds_load(db, head, DIG_GROUNDS_APPROACHED, &made->approaches, error);
     }
     if (status == DIG_OK) {
         dig_grounds_pool_spread(NULL, plain);
         dig_grounds_pool_spread(plain, made->approaches);
         made->step = dig_grounds_step(plain, head);
-        status = dig_grounds_spread_density(head, path, &made->approaches, &made->copies, error);
+        status =
+            dig_grounds_spread_density(head, db->path, &made->approaches, &made->copies, error);
     }
     if (status == DIG_OK) {
-        status = dig_grounds_spread_density(head, path, &plain, &made->copies, error);
+        status = dig_grounds_spread_density(head, db->path, &plain, &made->copies, error);
     }
     if (status == DIG_OK) {
-        status = fill(made, plain, path, error);
+        status = fill(made, plain, db->path, error);
     }
     if (status == DIG_OK && made->approaches->entries == 0) {
         dig_entry_set_destroy(made->approaches);

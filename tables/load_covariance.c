@@ -104,7 +104,7 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
     return DIG_OK;
 }
 
-enum dig_status dig_sql_load_covariance(sqlite3 *const db, const char *const path,
+enum dig_status dig_sql_load_covariance(const struct dig_db *const         db,
                                         const struct dig_table_head *const head,
                                         struct dig_curve_set *const        set,
                                         struct dig_error *const            error)
@@ -112,12 +112,12 @@ enum dig_status dig_sql_load_covariance(sqlite3 *const db, const char *const pat
     assert(db != NULL && head != NULL && set != NULL && set->covariance == NULL);
     struct dig_covariance *const made = calloc(head->trajectories + 1, sizeof *made);
     if (made == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", db->path);
     }
-    struct pool                  pool    = { .path = path, .head = head, .covariance = made };
+    struct pool                  pool    = { .path = db->path, .head = head, .covariance = made };
     const struct dig_run_visitor visitor = { take_run, &pool };
     const enum dig_status        status =
-        dig_sql_walk(db, path, head,
+        dig_sql_walk(db, head,
                      "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
                      "ORDER BY ground, trajectory, packing",
                      &visitor, error);

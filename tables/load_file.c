@@ -15,7 +15,7 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
                                   struct dig_entry_set **const effects,
                                   struct dig_error *const      error)
 {
-    sqlite3              *db     = NULL;
+    struct dig_db         db     = { .sql = NULL };
     struct dig_table_head head   = { .trajectories = 0 };
     enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
     if (status != DIG_OK) {
@@ -24,17 +24,17 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
     head.density_scales          = head.density_scales && !as_dug;
     struct dig_curve_set *set    = NULL;
     struct dig_entry_set *varied = NULL;
-    status                       = dig_sql_load(db, path, &head, &set, error);
+    status                       = dig_sql_load(&db, &head, &set, error);
     if (status == DIG_OK && set != NULL) {
-        status = dig_sql_load_covariance(db, path, &head, set, error);
+        status = dig_sql_load_covariance(&db, &head, set, error);
     }
     if (status == DIG_OK && effects != NULL) {
-        status = dig_grounds_load(db, path, &head, DIG_GROUNDS_VARIED, &varied, error);
+        status = dig_grounds_load(&db, &head, DIG_GROUNDS_VARIED, &varied, error);
     }
     if (varied != NULL) {
         dig_grounds_pool_spread(NULL, varied);
     }
-    (void)sqlite3_close(db);
+    (void)sqlite3_close(db.sql);
     if (status != DIG_OK) {
         dig_curve_set_destroy(set);
         return status;

@@ -45,26 +45,26 @@ static const char write_sql[] =
 static enum dig_status run(struct dig_store *const store, const char *const sql,
                            struct dig_error *const error)
 {
-    return dig_sql_run(store->db, store->path, sql, error);
+    return dig_sql_run(&store->db, sql, error);
 }
 
 // Every row that a statement gives of one database becomes one of another's table.
-static enum dig_status copy(sqlite3 *const from, const char *const input, const char *const select,
-                            const struct dig_store *const to, const char *const insert,
+static enum dig_status copy(const struct dig_db *const from, const char *const select,
+                            const struct dig_db *const to, const char *const insert,
                             struct dig_error *const error)
 {
     sqlite3_stmt   *row    = NULL;
     sqlite3_stmt   *into   = NULL;
-    enum dig_status status = dig_sql_prepare(from, input, select, &row, error);
+    enum dig_status status = dig_sql_prepare(from, select, &row, error);
     if (status == DIG_OK) {
-        status = dig_sql_prepare(to->db, to->path, insert, &into, error);
+        status = dig_sql_prepare(to, insert, &into, error);
     }
-    while (dig_sql_row(row, input, &status, error)) {
+    while (dig_sql_row(from, row, &status, error)) {
         for (int i = 0; i < sqlite3_column_count(row); i++) {
             (void)sqlite3_bind_value(into, i + 1, sqlite3_column_value(row, i));
         }
         if (sqlite3_step(into) != SQLITE_DONE) {
-            status = dig_sql_refuse(to->db, to->path, error);
+            status = dig_sql_refuse(to, error);
         }
         (void)sqlite3_reset(into);
     }
@@ -77,9 +77,10 @@ static enum dig_status copy(sqlite3 *const from, const char *const input, const 
 static enum dig_status check_conflict(const struct dig_store *const store, const char *const input,
                                       struct dig_error *const error)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(store->db, input, conflict_sql, &s, error);
-    if (dig_sql_row(s, input, &status, error)) {
+    const struct dig_db named  = { store->db.sql, input };
+    sqlite3_stmt       *s      = NULL;
+    enum dig_status     status = dig_sql_prepare(&named, conflict_sql, &s, error);
+    if (dig_sql_row(&named, s, &status, error)) {
         const char *const         effect = (const char *)sqlite3_column_text(s, 3);
         const bool                plain  = effect == NULL || effect[0] == '\0';
         const int                 at     = sqlite3_column_int(s, 4);
@@ -102,7 +103,7 @@ static enum dig_status check_conflict(const struct dig_store *const store, const
 }
 
 // Of the first input the store becomes a table of its scene; of any other it has to be that.
-static enum dig_status take_head(struct dig_store *const store, sqlite3 *const from,
+static enum dig_status take_head(struct dig_store *const store, const struct dig_db *const from,
                                  const char *const input[const], const size_t at,
                                  const struct dig_table_head *const head,
                                  struct dig_error *const            error)
@@ -123,7 +124,7 @@ static enum dig_status take_head(struct dig_store *const store, sqlite3 *const f
     };
     enum dig_status status = DIG_OK;
     for (size_t i = 0; status == DIG_OK && i < sizeof copies / sizeof copies[0]; i++) {
-        status = copy(from, input[0], copies[i][0], store, copies[i][1], error);
+        status = copy(from, copies[i][0], &store->db, copies[i][1], error);
     }
     store->head = *head;
     return status;
@@ -134,20 +135,20 @@ static enum dig_status take_head(struct dig_store *const store, sqlite3 *const f
 static enum dig_status take(struct dig_store *const store, const char *const input[const],
                             const size_t at, struct dig_error *const error)
 {
-    sqlite3              *from   = NULL;
+    struct dig_db         from   = { .sql = NULL };
     struct dig_table_head head   = { .trajectories = 0 };
     enum dig_status       status = dig_sql_open_read(input[at], &from, &head, error);
     if (status == DIG_OK) {
-        status = take_head(store, from, input, at, &head, error);
+        status = take_head(store, &from, input, at, &head, error);
     }
     if (status == DIG_OK) {
         status =
-            copy(from, input[at], runs_sql, store,
+            copy(&from, runs_sql, &store->db,
                  "INSERT INTO came VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
                  "?)",
                  error);
     }
-    (void)sqlite3_close(from);
+    (void)sqlite3_close(from.sql);
     if (status == DIG_OK) {
         status = check_conflict(store, input[at], error);
     }
@@ -156,11 +157,10 @@ static enum dig_status take(struct dig_store *const store, const char *const inp
 
 static enum dig_status refresh_entries(struct dig_store *const store, struct dig_error *const error)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        dig_sql_prepare(store->db, store->path,
-                        "SELECT DISTINCT ground, trajectory FROM run ORDER BY 1, 2", &s, error);
-    while (dig_sql_row(s, store->path, &status, error)) {
+    sqlite3_stmt   *s      = NULL;
+    enum dig_status status = dig_sql_prepare(
+        &store->db, "SELECT DISTINCT ground, trajectory FROM run ORDER BY 1, 2", &s, error);
+    while (dig_sql_row(&store->db, s, &status, error)) {
         status = dig_entry_refresh(store, sqlite3_column_int64(s, 0),
                                    (size_t)sqlite3_column_int64(s, 1), error);
     }
@@ -199,10 +199,10 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     }
     enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
     if (status == DIG_OK) {
-        status = dig_schema_tables(store->db, store->path, DIG_TABLE_VERSION, error);
+        status = dig_schema_tables(&store->db, DIG_TABLE_VERSION, error);
     }
     if (status == DIG_OK) {
-        status = dig_schema_number(store->db, store->path, error);
+        status = dig_schema_number(&store->db, error);
     }
     return status == DIG_OK ? fill(store, inputs, input, error) : status;
 }
@@ -225,7 +225,7 @@ enum dig_status dig_store_merge(const char *const path, const size_t inputs,
         return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
     }
     enum dig_status status = merge_into(store, inputs, input, error);
-    (void)sqlite3_close(store->db);
+    (void)sqlite3_close(store->db.sql);
     if (status == DIG_OK && rename(store->path, path) != 0) {
         status = dig_error_set(error, DIG_EIO, "%s: cannot be renamed to %s", store->path, path);
     }

@@ -1,7 +1,5 @@
 #include "tables/open.h"
 
-#include "tables/schema/schema.h"
-
 #include <assert.h>
 #include <limits.h>
 #include <pthread.h>
@@ -52,26 +50,26 @@ static bool plain_path(const char *const path, const size_t size, char plain[con
     return path[0] != '\0' && length > 0 && (size_t)length < size;
 }
 
-enum dig_status dig_sql_open(const char *const path, const int flags, sqlite3 **const db,
+enum dig_status dig_sql_open(const char *const path, const int flags, struct dig_db *const db,
                              struct dig_error *const error)
 {
     assert(path != NULL && db != NULL);
-    sqlite3 *opened = NULL;
-    char     plain[PATH_MAX];
+    struct dig_db opened = { .path = path };
+    char          plain[PATH_MAX];
     if (!plain_path(path, sizeof plain, plain)) {
         return dig_error_set(error, DIG_EINVAL, "%.200s: no name of a file, expected one", path);
     }
     // Where it could not be registered SQLite says so, and opens nothing.
     (void)pthread_once(&registered, guard);
-    if (sqlite3_open_v2(plain, &opened, flags, "digsight") != SQLITE_OK) {
+    if (sqlite3_open_v2(plain, &opened.sql, flags, "digsight") != SQLITE_OK) {
         (void)dig_error_set(error, DIG_EIO, "%s: %s", path,
-                            opened != NULL ? sqlite3_errmsg(opened) : "no memory");
-        (void)sqlite3_close(opened);
+                            opened.sql != NULL ? sqlite3_errmsg(opened.sql) : "no memory");
+        (void)sqlite3_close(opened.sql);
         return DIG_EIO;
     }
-    const enum dig_status status = dig_sql_setup(opened, path, error);
+    const enum dig_status status = dig_sql_setup(&opened, error);
     if (status != DIG_OK) {
-        (void)sqlite3_close(opened);
+        (void)sqlite3_close(opened.sql);
         return status;
     }
     *db = opened;

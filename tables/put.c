@@ -90,7 +90,7 @@ static enum dig_status make_ground(struct dig_store *const            store,
 {
     sqlite3_stmt   *s      = NULL;
     enum dig_status status = dig_sql_prepare(
-        store->db, store->path,
+        &store->db,
         "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
         "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) "
         "ON CONFLICT DO UPDATE SET friction = friction RETURNING id",
@@ -98,7 +98,7 @@ static enum dig_status make_ground(struct dig_store *const            store,
     if (status == DIG_OK) {
         dig_ground_bind(s, origin);
     }
-    if (dig_sql_row(s, store->path, &status, error)) {
+    if (dig_sql_row(&store->db, s, &status, error)) {
         *id = sqlite3_column_int64(s, 0);
     }
     (void)sqlite3_finalize(s);
@@ -112,7 +112,7 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
 {
     sqlite3_stmt   *s      = NULL;
     enum dig_status status = dig_sql_prepare(
-        store->db, store->path,
+        &store->db,
         "INSERT INTO run (ground, trajectory, packing, seed, engine, version, grains, "
         "windows, first_s, step_s, curve, made_utc, wall_s) "
         "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
@@ -135,7 +135,7 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
     (void)sqlite3_bind_double(s, 13, origin->wall_s);
     const int step = sqlite3_step(s);
     if (step == SQLITE_CONSTRAINT &&
-        sqlite3_extended_errcode(store->db) == SQLITE_CONSTRAINT_UNIQUE) {
+        sqlite3_extended_errcode(store->db.sql) == SQLITE_CONSTRAINT_UNIQUE) {
         char how[DIG_APPROACH_TEXT_SIZE];
         dig_approach_text(&origin->approach, how);
         status = dig_error_set(error, DIG_EINVAL,
@@ -146,7 +146,7 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
                                origin->effect[0] != '\0' ? " with " : "", origin->effect,
                                store->head.trajectory[origin->trajectory].name, how);
     } else if (step != SQLITE_DONE) {
-        status = dig_sql_refuse(store->db, store->path, error);
+        status = dig_sql_refuse(&store->db, error);
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -166,7 +166,7 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
 
     sqlite3_stmt         *s = NULL;
     const enum dig_status status =
-        dig_sql_prepare(store->db, store->path,
+        dig_sql_prepare(&store->db,
                         "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
                         "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO UPDATE "
                         "SET packings = ?3, mean = ?4, spread = ?5",
@@ -181,7 +181,7 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     if (e->packings > 1) {
         (void)sqlite3_bind_blob(s, 5, spread, sizeof spread, SQLITE_STATIC);
     }
-    return dig_sql_done(s, store->path, error);
+    return dig_sql_done(&store->db, s, error);
 }
 
 enum dig_status dig_entry_refresh(struct dig_store *const store, const sqlite3_int64 ground,
@@ -196,7 +196,7 @@ enum dig_status dig_entry_refresh(struct dig_store *const store, const sqlite3_i
         status = write_entry(store, ground, trajectory, ensemble, error);
     }
     if (status == DIG_OK) {
-        status = dig_seal_write(store->db, store->path, ground, trajectory, error);
+        status = dig_seal_write(&store->db, ground, trajectory, error);
     }
     free(ensemble);
     return status;
@@ -218,9 +218,9 @@ static enum dig_status put_in_transaction(struct dig_store *const            sto
     if (status == DIG_OK) {
         status = dig_entry_refresh(store, ground, origin->trajectory, error);
     }
-    return status == DIG_OK ? dig_sql_run(store->db, store->path,
-                                          store->gathers ? "RELEASE run" : "COMMIT", error)
-                            : status;
+    return status == DIG_OK
+               ? dig_sql_run(&store->db, store->gathers ? "RELEASE run" : "COMMIT", error)
+               : status;
 }
 
 // The first run added to a table of an older version makes it one of today's.
@@ -229,8 +229,7 @@ static enum dig_status upgrade(struct dig_store *const store, struct dig_error *
     if (store->head.version == DIG_TABLE_VERSION) {
         return DIG_OK;
     }
-    const enum dig_status status =
-        dig_schema_upgrade(store->db, store->path, store->head.version, error);
+    const enum dig_status status = dig_schema_upgrade(&store->db, store->head.version, error);
     if (status == DIG_OK) {
         store->head.version = DIG_TABLE_VERSION;
     }
@@ -242,7 +241,7 @@ enum dig_status dig_store_begin(struct dig_store *const store, struct dig_error 
     assert(store != NULL && store->lock_fd >= 0 && !store->gathers);
     enum dig_status status = upgrade(store, error);
     if (status == DIG_OK) {
-        status = dig_sql_run(store->db, store->path, "BEGIN IMMEDIATE", error);
+        status = dig_sql_run(&store->db, "BEGIN IMMEDIATE", error);
     }
     store->gathers = status == DIG_OK;
     return status;
@@ -251,7 +250,7 @@ enum dig_status dig_store_begin(struct dig_store *const store, struct dig_error 
 enum dig_status dig_store_commit(struct dig_store *const store, struct dig_error *const error)
 {
     assert(store != NULL && store->gathers);
-    const enum dig_status status = dig_sql_run(store->db, store->path, "COMMIT", error);
+    const enum dig_status status = dig_sql_run(&store->db, "COMMIT", error);
     store->gathers               = status != DIG_OK;
     return status;
 }
@@ -284,13 +283,13 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     }
     status = upgrade(store, error);
     if (status == DIG_OK) {
-        status = dig_sql_run(store->db, store->path,
-                             store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE", error);
+        status =
+            dig_sql_run(&store->db, store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE", error);
     }
     if (status == DIG_OK) {
         status = put_in_transaction(store, origin, recording, step_s, bytes, error);
         if (status != DIG_OK) {
-            (void)sqlite3_exec(store->db,
+            (void)sqlite3_exec(store->db.sql,
                                store->gathers ? "ROLLBACK TO run; RELEASE run" : "ROLLBACK", NULL,
                                NULL, NULL);
         }

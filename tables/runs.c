@@ -28,7 +28,7 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     assert(store != NULL && origin != NULL && there != NULL);
     sqlite3_stmt   *s      = NULL;
     enum dig_status status = dig_sql_prepare(
-        store->db, store->path,
+        &store->db,
         "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE friction = ?1 "
         "AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "
         "AND depth = ?6 AND attack_rad = ?7 AND packing = ?8 AND trajectory = ?9",
@@ -39,7 +39,7 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     dig_ground_bind(s, origin);
     (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)origin->packing);
     (void)sqlite3_bind_int64(s, 9, (sqlite3_int64)origin->trajectory);
-    const bool found = dig_sql_row(s, store->path, &status, error);
+    const bool found = dig_sql_row(&store->db, s, &status, error);
     if (status == DIG_OK) {
         *there = found;
     }
@@ -122,10 +122,9 @@ static enum dig_status read_run(const char *const path, const struct dig_table_h
     return DIG_OK;
 }
 
-enum dig_status dig_sql_walk(sqlite3 *const db, const char *const path,
-                             const struct dig_table_head *const head, const char *const which,
-                             const struct dig_run_visitor *const visitor,
-                             struct dig_error *const             error)
+enum dig_status dig_sql_walk(const struct dig_db *const db, const struct dig_table_head *const head,
+                             const char *const which, const struct dig_run_visitor *const visitor,
+                             struct dig_error *const error)
 {
     char          sql[500];
     sqlite3_stmt *s = NULL;
@@ -133,11 +132,11 @@ enum dig_status dig_sql_walk(sqlite3 *const db, const char *const path,
         snprintf(sql, sizeof sql,
                  "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground %s", which);
     assert(length > 0 && (size_t)length < sizeof sql);
-    enum dig_status status = dig_sql_prepare(db, path, sql, &s, error);
-    while (dig_sql_row(s, path, &status, error)) {
+    enum dig_status status = dig_sql_prepare(db, sql, &s, error);
+    while (dig_sql_row(db, s, &status, error)) {
         struct dig_run run   = { .windows = 0 };
         float         *value = NULL;
-        status               = read_run(path, head, s, &run, &value, error);
+        status               = read_run(db->path, head, s, &run, &value, error);
         if (status == DIG_OK) {
             status = visitor->visit(visitor->context, &run, error);
         }
@@ -152,7 +151,7 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
                                struct dig_error *const             error)
 {
     assert(store != NULL && visitor != NULL);
-    return dig_sql_walk(store->db, store->path, &store->head,
+    return dig_sql_walk(&store->db, &store->head,
                         "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, "
                         "attack_rad, trajectory, packing",
                         visitor, error);
@@ -196,5 +195,5 @@ enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_in
     *ensemble                             = (struct dig_ensemble){ 0 };
     (void)snprintf(which, sizeof which, "WHERE ground = %lld AND trajectory = %zu ORDER BY packing",
                    (long long)ground, trajectory);
-    return dig_sql_walk(store->db, store->path, &store->head, which, &visitor, error);
+    return dig_sql_walk(&store->db, &store->head, which, &visitor, error);
 }

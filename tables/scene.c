@@ -6,12 +6,11 @@
 #include <assert.h>
 #include <string.h>
 
-static enum dig_status read_canonical(sqlite3 *const db, const char *const path,
-                                      struct dig_scene *const scene, struct dig_error *const error)
+static enum dig_status read_canonical(const struct dig_db *const db, struct dig_scene *const scene,
+                                      struct dig_error *const error)
 {
-    sqlite3_stmt         *s = NULL;
-    const enum dig_status status =
-        dig_sql_first(db, path, "SELECT canonical FROM scene", &s, error);
+    sqlite3_stmt         *s      = NULL;
+    const enum dig_status status = dig_sql_first(db, "SELECT canonical FROM scene", &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -28,14 +27,14 @@ static enum dig_status read_canonical(sqlite3 *const db, const char *const path,
                : dig_error_set(error, DIG_EINVAL,
                                "%s: scene.canonical: expected profile_m, box_m, material and "
                                "gravity_mps2 of a scene",
-                               path);
+                               db->path);
 }
 
 enum dig_status dig_table_scene(const char *const path, struct dig_scene *const scene,
                                 struct dig_error *const error)
 {
     assert(path != NULL && scene != NULL);
-    sqlite3              *db     = NULL;
+    struct dig_db         db     = { .sql = NULL };
     struct dig_table_head head   = { .trajectories = 0 };
     enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
     if (status != DIG_OK) {
@@ -44,8 +43,8 @@ enum dig_status dig_table_scene(const char *const path, struct dig_scene *const 
     struct dig_scene read = { .trajectories = head.trajectories };
     memcpy(read.name, head.scene_name, sizeof read.name);
     memcpy(read.trajectory, head.trajectory, sizeof read.trajectory);
-    status = read_canonical(db, path, &read, error);
-    (void)sqlite3_close(db);
+    status = read_canonical(&db, &read, error);
+    (void)sqlite3_close(db.sql);
     if (status == DIG_OK) {
         *scene = read;
     }

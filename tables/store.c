@@ -19,15 +19,15 @@
 #define LOCK_TRIES     40 // two seconds: workers of a killed writer need a moment to die
 
 // In one transaction with what is read next: what was checked is what is read.
-static enum dig_status begin_checked(sqlite3 *const db, const char *const path,
+static enum dig_status begin_checked(const struct dig_db *const   db,
                                      struct dig_table_head *const head,
                                      struct dig_error *const      error)
 {
-    const enum dig_status status = dig_sql_run(db, path, "BEGIN", error);
-    return status == DIG_OK ? dig_schema_check(db, path, head, error) : status;
+    const enum dig_status status = dig_sql_run(db, "BEGIN", error);
+    return status == DIG_OK ? dig_schema_check(db, head, error) : status;
 }
 
-enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
+enum dig_status dig_sql_open_read(const char *const path, struct dig_db *const db,
                                   struct dig_table_head *const head, struct dig_error *const error)
 {
     struct stat file;
@@ -38,24 +38,24 @@ enum dig_status dig_sql_open_read(const char *const path, sqlite3 **const db,
         return dig_error_set(error, DIG_EINVAL, "%s: not a digsight table, expected a regular file",
                              path);
     }
-    sqlite3        *opened = NULL;
+    struct dig_db   opened = { .sql = NULL };
     enum dig_status status = dig_sql_open(path, SQLITE_OPEN_READONLY, &opened, error);
     if (status != DIG_OK) {
         return status;
     }
-    status = begin_checked(opened, path, head, error);
+    status = begin_checked(&opened, head, error);
 
     // A journal left by a crash can only be rolled back by one who may write.
-    if (status == DIG_EIO && sqlite3_extended_errcode(opened) == SQLITE_READONLY_ROLLBACK) {
-        (void)sqlite3_close(opened);
-        opened = NULL;
-        status = dig_sql_open(path, SQLITE_OPEN_READWRITE, &opened, error);
+    if (status == DIG_EIO && sqlite3_extended_errcode(opened.sql) == SQLITE_READONLY_ROLLBACK) {
+        (void)sqlite3_close(opened.sql);
+        opened.sql = NULL;
+        status     = dig_sql_open(path, SQLITE_OPEN_READWRITE, &opened, error);
         if (status == DIG_OK) {
-            status = begin_checked(opened, path, head, error);
+            status = begin_checked(&opened, head, error);
         }
     }
     if (status != DIG_OK) {
-        (void)sqlite3_close(opened);
+        (void)sqlite3_close(opened.sql);
         return status;
     }
     *db = opened;
@@ -77,7 +77,8 @@ static enum dig_status make_store(const char *const path, struct dig_store **con
         return DIG_EINVAL;
     }
     memcpy(made->path, path, strlen(path) + 1);
-    *store = made;
+    made->db.path = made->path;
+    *store        = made;
     return DIG_OK;
 }
 
@@ -92,7 +93,7 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
     }
     // A reader that stays open must not keep a writer from committing.
     if (status == DIG_OK) {
-        status = dig_sql_run(made->db, path, "COMMIT", error);
+        status = dig_sql_run(&made->db, "COMMIT", error);
     }
     if (status != DIG_OK) {
         dig_store_close(made);
@@ -173,9 +174,9 @@ static enum dig_status check_same_scene(const struct dig_store *const store,
 // must not end a computation of hours.
 static enum dig_status prepare_writing(struct dig_store *const store, struct dig_error *const error)
 {
-    (void)sqlite3_busy_timeout(store->db, WRITER_WAIT_ms);
-    return dig_sql_run(store->db, store->path,
-                       "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
+    (void)sqlite3_busy_timeout(store->db.sql, WRITER_WAIT_ms);
+    return dig_sql_run(&store->db, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;",
+                       error);
 }
 
 // A file of length 0 is a table not begun: what a crash between making and filling leaves.
@@ -192,10 +193,10 @@ static enum dig_status open_or_fill(struct dig_store *const       store,
         return status;
     }
     if (file.st_size == 0) {
-        status = dig_schema_create(store->db, store->path, scene, error);
+        status = dig_schema_create(&store->db, scene, error);
     }
     if (status == DIG_OK) {
-        status = dig_schema_check(store->db, store->path, &store->head, error);
+        status = dig_schema_check(&store->db, &store->head, error);
     }
     if (status == DIG_OK) {
         status = prepare_writing(store, error);
@@ -236,7 +237,7 @@ static enum dig_status seal(struct dig_store *const store, struct dig_error *con
     struct dig_store_report report;
     enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
     if (status == DIG_OK) {
-        status = dig_schema_check(store->db, store->path, &store->head, error);
+        status = dig_schema_check(&store->db, &store->head, error);
     }
     if (status == DIG_OK) {
         status = prepare_writing(store, error);
@@ -246,7 +247,7 @@ static enum dig_status seal(struct dig_store *const store, struct dig_error *con
         status = dig_store_check(store, &report, error);
     }
     return status == DIG_OK && store->head.version < DIG_TABLE_VERSION
-               ? dig_schema_upgrade(store->db, store->path, store->head.version, error)
+               ? dig_schema_upgrade(&store->db, store->head.version, error)
                : status;
 }
 
@@ -276,7 +277,7 @@ enum dig_status dig_store_seal(const char *const path, bool *const was,
 void dig_store_close(struct dig_store *const store)
 {
     if (store != NULL) {
-        (void)sqlite3_close(store->db);
+        (void)sqlite3_close(store->db.sql);
         // Last: closing any descriptor of a file drops the process's fcntl locks on it.
         if (store->lock_fd >= 0) {
             (void)close(store->lock_fd);

@@ -12,7 +12,7 @@
 #define DIG_WINDOWS_MAX 1000000 // of one dig; a blob beyond it is damage
 
 struct dig_store {
-    sqlite3              *db;
+    struct dig_db         db;
     int                   lock_fd; // -1: opened to read
     bool                  gathers; // between dig_store_begin() and dig_store_commit()
     struct dig_table_head head;
@@ -21,14 +21,14 @@ struct dig_store {
 
 /// Opens the file read-only, rolling back first what a crash left half written, begins a
 /// transaction and checks the file in it.
-DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, sqlite3 **db,
+DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, struct dig_db *db,
                                                  struct dig_table_head *head,
                                                  struct dig_error      *error);
 
 /// What was dug without an effect, from an open database, which should be in a transaction; there
 /// may be no entries. Where one has a single packing, its spread is pooled from all of them that
 /// have more.
-DIG_MUST_CHECK enum dig_status dig_sql_load(sqlite3 *db, const char *path,
+DIG_MUST_CHECK enum dig_status dig_sql_load(const struct dig_db         *db,
                                             const struct dig_table_head *head,
                                             struct dig_curve_set **set, struct dig_error *error);
 
@@ -37,7 +37,7 @@ DIG_MUST_CHECK enum dig_status dig_sql_load(sqlite3 *db, const char *path,
 void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);
 
 /// Visits the runs that `which`, the end of a statement over `run` and `ground`, says.
-DIG_MUST_CHECK enum dig_status dig_sql_walk(sqlite3 *db, const char *path,
+DIG_MUST_CHECK enum dig_status dig_sql_walk(const struct dig_db         *db,
                                             const struct dig_table_head *head, const char *which,
                                             const struct dig_run_visitor *visitor,
                                             struct dig_error             *error);

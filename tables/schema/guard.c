@@ -8,8 +8,7 @@
 #define LENGTH_MAX 33554432 // of a row: the longest run has half of it
 #define SQL_MAX    65536
 
-enum dig_status dig_sql_setup(sqlite3 *const db, const char *const path,
-                              struct dig_error *const error)
+enum dig_status dig_sql_setup(const struct dig_db *const db, struct dig_error *const error)
 {
     static const int off[] = {
         SQLITE_DBCONFIG_TRUSTED_SCHEMA,
@@ -34,17 +33,16 @@ enum dig_status dig_sql_setup(sqlite3 *const db, const char *const path,
         { SQLITE_LIMIT_TRIGGER_DEPTH, 1 },
         { SQLITE_LIMIT_WORKER_THREADS, 0 },
     };
-    (void)sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+    (void)sqlite3_db_config(db->sql, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     for (size_t i = 0; i < sizeof off / sizeof off[0]; i++) {
-        (void)sqlite3_db_config(db, off[i], 0, NULL);
+        (void)sqlite3_db_config(db->sql, off[i], 0, NULL);
     }
     for (size_t i = 0; i < sizeof limit / sizeof limit[0]; i++) {
-        (void)sqlite3_limit(db, limit[i][0], limit[i][1]);
+        (void)sqlite3_limit(db->sql, limit[i][0], limit[i][1]);
     }
-    (void)sqlite3_busy_timeout(db, 5000);
+    (void)sqlite3_busy_timeout(db->sql, 5000);
     return dig_sql_run(
-        db, path, "PRAGMA foreign_keys = ON; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;",
-        error);
+        db, "PRAGMA foreign_keys = ON; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;", error);
 }
 
 static const char objects_sql[] =
@@ -73,15 +71,14 @@ static int order_of(sqlite3_stmt *const a, sqlite3_stmt *const b)
 
 // Both statements give the objects of a database; both end when both are alike.
 static enum dig_status compare(sqlite3_stmt *const found, sqlite3_stmt *const expected,
-                               sqlite3 *const db, const char *const path,
-                               struct dig_error *const error)
+                               const struct dig_db *const db, struct dig_error *const error)
 {
     for (;;) {
         const int is     = sqlite3_step(found);
         const int should = sqlite3_step(expected);
         if ((is != SQLITE_ROW && is != SQLITE_DONE) ||
             (should != SQLITE_ROW && should != SQLITE_DONE)) {
-            return dig_sql_refuse(db, path, error);
+            return dig_sql_refuse(db, error);
         }
         if (is == SQLITE_DONE && should == SQLITE_DONE) {
             return DIG_OK;
@@ -90,42 +87,42 @@ static enum dig_status compare(sqlite3_stmt *const found, sqlite3_stmt *const ex
                           : should == SQLITE_DONE ? -1
                                                   : order_of(found, expected);
         if (order < 0) {
-            return refuse(path, found, "not digtable's, expected its tables alone", error);
+            return refuse(db->path, found, "not digtable's, expected its tables alone", error);
         }
         if (order > 0) {
-            return refuse(path, expected, "missing, expected it", error);
+            return refuse(db->path, expected, "missing, expected it", error);
         }
         if (strcmp(text_at(found, 2), text_at(expected, 2)) != 0 ||
             strcmp(text_at(found, 3), text_at(expected, 3)) != 0) {
-            return refuse(path, found, "not as digtable makes it, expected that", error);
+            return refuse(db->path, found, "not as digtable makes it, expected that", error);
         }
     }
 }
 
-enum dig_status dig_schema_compare(sqlite3 *const db, const char *const path, const int version,
+enum dig_status dig_schema_compare(const struct dig_db *const db, const int version,
                                    struct dig_error *const error)
 {
-    sqlite3        *ours     = NULL;
+    struct dig_db   ours     = { .path = db->path };
     sqlite3_stmt   *found    = NULL;
     sqlite3_stmt   *expected = NULL;
     enum dig_status status   = DIG_OK;
-    if (sqlite3_open_v2(":memory:", &ours, SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY, NULL) !=
+    if (sqlite3_open_v2(":memory:", &ours.sql, SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY, NULL) !=
         SQLITE_OK) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", db->path);
     }
     if (status == DIG_OK) {
-        status = dig_schema_tables(ours, path, version, error);
+        status = dig_schema_tables(&ours, version, error);
     }
     if (status == DIG_OK &&
-        (sqlite3_prepare_v2(ours, objects_sql, -1, &expected, NULL) != SQLITE_OK ||
-         sqlite3_prepare_v2(db, objects_sql, -1, &found, NULL) != SQLITE_OK)) {
-        status = dig_sql_refuse(db, path, error);
+        (sqlite3_prepare_v2(ours.sql, objects_sql, -1, &expected, NULL) != SQLITE_OK ||
+         sqlite3_prepare_v2(db->sql, objects_sql, -1, &found, NULL) != SQLITE_OK)) {
+        status = dig_sql_refuse(db, error);
     }
     if (status == DIG_OK) {
-        status = compare(found, expected, db, path, error);
+        status = compare(found, expected, db, error);
     }
     (void)sqlite3_finalize(found);
     (void)sqlite3_finalize(expected);
-    (void)sqlite3_close(ours);
+    (void)sqlite3_close(ours.sql);
     return status;
 }

@@ -16,11 +16,11 @@
 #define SMOOTH_MOST_s 60.0
 
 // The one integer a PRAGMA answers.
-static enum dig_status pragma_int(sqlite3 *const db, const char *const path, const char *const sql,
+static enum dig_status pragma_int(const struct dig_db *const db, const char *const sql,
                                   int *const value, struct dig_error *const error)
 {
     sqlite3_stmt         *s      = NULL;
-    const enum dig_status status = dig_sql_first(db, path, sql, &s, error);
+    const enum dig_status status = dig_sql_first(db, sql, &s, error);
     if (status == DIG_OK) {
         *value = sqlite3_column_int(s, 0);
         (void)sqlite3_finalize(s);
@@ -28,37 +28,36 @@ static enum dig_status pragma_int(sqlite3 *const db, const char *const path, con
     return status;
 }
 
-static enum dig_status check_identity(sqlite3 *const db, const char *const path, int *const version,
+static enum dig_status check_identity(const struct dig_db *const db, int *const version,
                                       struct dig_error *const error)
 {
     int             id     = 0;
-    enum dig_status status = pragma_int(db, path, "PRAGMA main.application_id", &id, error);
+    enum dig_status status = pragma_int(db, "PRAGMA main.application_id", &id, error);
     if (status == DIG_OK) {
-        status = pragma_int(db, path, "PRAGMA main.user_version", version, error);
+        status = pragma_int(db, "PRAGMA main.user_version", version, error);
     }
     if (status != DIG_OK) {
         return status;
     }
     if (id != DIG_TABLE_APPLICATION_ID) {
         return dig_error_set(error, DIG_EINVAL,
-                             "%s: not a digsight table (application_id %d, expected %d)", path, id,
-                             DIG_TABLE_APPLICATION_ID);
+                             "%s: not a digsight table (application_id %d, expected %d)", db->path,
+                             id, DIG_TABLE_APPLICATION_ID);
     }
     if (*version < DIG_TABLE_VERSION_PLAIN || *version > DIG_TABLE_VERSION) {
         return dig_error_set(error, DIG_ESCHEMA,
                              "%s: user_version: table format %d, expected %d to %d as this program "
                              "knows them (the digtable generate command that made the table makes "
                              "it anew)",
-                             path, *version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
+                             db->path, *version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
     }
     return DIG_OK;
 }
 
-static enum dig_status check_integrity(sqlite3 *const db, const char *const path,
-                                       struct dig_error *const error)
+static enum dig_status check_integrity(const struct dig_db *const db, struct dig_error *const error)
 {
     sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_first(db, path, "PRAGMA integrity_check(1)", &s, error);
+    enum dig_status status = dig_sql_first(db, "PRAGMA integrity_check(1)", &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -66,10 +65,11 @@ static enum dig_status check_integrity(sqlite3 *const db, const char *const path
     if (found == NULL || strcmp(found, "ok") != 0) {
         // SQLite says in which database first, on a line of its own.
         const char *const line = found != NULL ? strchr(found, '\n') : NULL;
-        status = dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
-                               line != NULL    ? line + 1
-                               : found != NULL ? found
-                                               : "?");
+        status =
+            dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", db->path,
+                          line != NULL    ? line + 1
+                          : found != NULL ? found
+                                          : "?");
     }
     (void)sqlite3_finalize(s);
 
@@ -77,12 +77,12 @@ static enum dig_status check_integrity(sqlite3 *const db, const char *const path
         return status;
     }
     s      = NULL;
-    status = dig_sql_prepare(db, path, "PRAGMA foreign_key_check", &s, error);
+    status = dig_sql_prepare(db, "PRAGMA foreign_key_check", &s, error);
     if (status == DIG_OK && sqlite3_step(s) == SQLITE_ROW) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: damaged: a row of %s refers to nothing, expected an intact "
                                "table",
-                               path, (const char *)sqlite3_column_text(s, 0));
+                               db->path, (const char *)sqlite3_column_text(s, 0));
     }
     (void)sqlite3_finalize(s);
     return status;
@@ -111,13 +111,12 @@ static enum dig_status damaged(const char *const path, const char *const what,
 }
 
 // The scene's row; *canonical is malloc'ed.
-static enum dig_status read_scene(sqlite3 *const db, const char *const path,
-                                  struct dig_table_head *const head, char **const canonical,
-                                  struct dig_error *const error)
+static enum dig_status read_scene(const struct dig_db *const db, struct dig_table_head *const head,
+                                  char **const canonical, struct dig_error *const error)
 {
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
-        dig_sql_prepare(db, path,
+        dig_sql_prepare(db,
                         "SELECT name, hash, canonical, tooth_m, bucket_width_m, young_Pa, "
                         "smooth_half_s, points FROM scene",
                         &s, error);
@@ -126,7 +125,7 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
     }
     if (sqlite3_step(s) != SQLITE_ROW) {
         (void)sqlite3_finalize(s);
-        return damaged(path, "scene: no row, expected one", error);
+        return damaged(db->path, "scene: no row, expected one", error);
     }
     const char *const hash     = (const char *)sqlite3_column_text(s, 1);
     const char *const text     = (const char *)sqlite3_column_text(s, 2);
@@ -141,23 +140,24 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
         dig_sha256_hex(text, strlen(text), actual);
     }
     if (!column_name(s, 0, head->scene_name)) {
-        status = damaged(path, "scene.name: expected at most 31 characters: " DIG_NAME_RULE, error);
+        status =
+            damaged(db->path, "scene.name: expected at most 31 characters: " DIG_NAME_RULE, error);
     } else if (hash == NULL || text == NULL || strcmp(hash, actual) != 0) {
         status = dig_error_set(error, DIG_EINVAL,
                                "%s: scene.hash: %.64s, expected %s, the SHA-256 of scene.canonical",
-                               path, hash != NULL ? hash : "nothing", actual);
+                               db->path, hash != NULL ? hash : "nothing", actual);
     } else if (!positive(head->tooth_m) || !positive(head->bucket_width_m) ||
                !positive(head->young_Pa) ||
                !(head->smooth_half_s >= 0.0 && head->smooth_half_s <= SMOOTH_MOST_s)) {
-        status = damaged(path, "scene: tooth_m, bucket_width_m, young_Pa: expected > 0", error);
+        status = damaged(db->path, "scene: tooth_m, bucket_width_m, young_Pa: expected > 0", error);
     } else if (points != DIG_CURVE_POINTS) {
-        status = dig_error_set(error, DIG_ESCHEMA, "%s: scene.points: %lld, expected %d", path,
+        status = dig_error_set(error, DIG_ESCHEMA, "%s: scene.points: %lld, expected %d", db->path,
                                (long long)points, DIG_CURVE_POINTS);
     } else {
         memcpy(head->scene_hash, hash, sizeof head->scene_hash);
         *canonical = malloc(strlen(text) + 1);
         if (*canonical == NULL) {
-            status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+            status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", db->path);
         } else {
             memcpy(*canonical, text, strlen(text) + 1);
         }
@@ -166,13 +166,13 @@ static enum dig_status read_scene(sqlite3 *const db, const char *const path,
     return status;
 }
 
-static enum dig_status read_trajectories(sqlite3 *const db, const char *const path,
+static enum dig_status read_trajectories(const struct dig_db *const   db,
                                          struct dig_table_head *const head,
                                          struct dig_error *const      error)
 {
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
-        dig_sql_prepare(db, path,
+        dig_sql_prepare(db,
                         "SELECT t.id, t.name, theta0_rad, start_x_m, start_z_m, number, p.name, "
                         "duration_s, vx_mps, vz_mps, omega_radps FROM trajectory t JOIN phase p "
                         "ON p.trajectory = t.id ORDER BY t.id, number",
@@ -180,7 +180,7 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
     if (status != DIG_OK) {
         return status;
     }
-    while (dig_sql_row(s, path, &status, error)) {
+    while (dig_sql_row(db, s, &status, error)) {
         const sqlite3_int64 id     = sqlite3_column_int64(s, 0);
         const sqlite3_int64 number = sqlite3_column_int64(s, 5);
         if (number == 0) {
@@ -193,8 +193,8 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
         if (t == NULL || id != (sqlite3_int64)head->trajectories - 1 || number >= DIG_PHASES_MAX ||
             number != (sqlite3_int64)t->phases || !column_name(s, 1, t->name) ||
             !column_name(s, 6, t->phase[t->phases].name)) {
-            status = damaged(path, "trajectory: expected rows numbered from 0, with their phases",
-                             error);
+            status = damaged(db->path,
+                             "trajectory: expected rows numbered from 0, with their phases", error);
             break;
         }
         struct dig_phase *const p = &t->phase[t->phases++];
@@ -206,10 +206,10 @@ static enum dig_status read_trajectories(sqlite3 *const db, const char *const pa
         p->vz_mps                 = sqlite3_column_double(s, 9);
         p->omega_radps            = sqlite3_column_double(s, 10);
         if (!positive(p->duration_s)) {
-            status = damaged(path, "phase.duration_s: expected > 0", error);
+            status = damaged(db->path, "phase.duration_s: expected > 0", error);
         } else if (!isfinite(t->theta0_rad) || !isfinite(t->start_x_m) || !isfinite(t->start_z_m) ||
                    !isfinite(p->vx_mps) || !isfinite(p->vz_mps) || !isfinite(p->omega_radps)) {
-            status = damaged(path, "trajectory, phase: expected finite numbers", error);
+            status = damaged(db->path, "trajectory, phase: expected finite numbers", error);
         }
     }
     (void)sqlite3_finalize(s);
@@ -271,37 +271,37 @@ static const char plain_ground_sql[] =
     "CREATE TEMP VIEW ground AS SELECT id, friction, rolling, density_kgpm3, effect, magnitude, "
     "1.0 AS depth, 0.0 AS attack_rad FROM main.ground";
 
-enum dig_status dig_schema_check(sqlite3 *const db, const char *const path,
-                                 struct dig_table_head *const head, struct dig_error *const error)
+enum dig_status dig_schema_check(const struct dig_db *const db, struct dig_table_head *const head,
+                                 struct dig_error *const error)
 {
     struct dig_table_head read      = { .trajectories = 0 };
     char                 *canonical = NULL;
-    enum dig_status       status    = check_identity(db, path, &read.version, error);
+    enum dig_status       status    = check_identity(db, &read.version, error);
     if (status == DIG_OK) {
-        status = dig_schema_compare(db, path, read.version, error);
+        status = dig_schema_compare(db, read.version, error);
     }
     if (status == DIG_OK) {
-        status = check_integrity(db, path, error);
+        status = check_integrity(db, error);
     }
     if (status == DIG_OK) {
-        status = read_scene(db, path, &read, &canonical, error);
+        status = read_scene(db, &read, &canonical, error);
     }
     if (status == DIG_OK) {
-        status = read_trajectories(db, path, &read, error);
+        status = read_trajectories(db, &read, error);
     }
     if (status == DIG_OK && canonical != NULL && !trajectories_agree(&read, canonical)) {
         status = damaged(
-            path, "trajectory: the rows differ from scene.canonical, expected the same", error);
+            db->path, "trajectory: the rows differ from scene.canonical, expected the same", error);
     }
     if (status == DIG_OK && canonical != NULL) {
         read_canonical(&read, canonical);
     }
     free(canonical);
     if (status == DIG_OK && read.version == DIG_TABLE_VERSION_PLAIN) {
-        status = dig_sql_run(db, path, plain_ground_sql, error);
+        status = dig_sql_run(db, plain_ground_sql, error);
     }
     if (status == DIG_OK && read.version >= DIG_TABLE_VERSION) {
-        status = dig_seal_check(db, path, error);
+        status = dig_seal_check(db, error);
     }
     if (status == DIG_OK) {
         *head = read;

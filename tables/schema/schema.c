@@ -72,73 +72,74 @@ static const char plain_ground_sql[] =
     "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude)"
     ") STRICT;";
 
-enum dig_status dig_sql_refuse(sqlite3 *const db, const char *const path,
-                               struct dig_error *const error)
+enum dig_status dig_sql_refuse(const struct dig_db *const db, struct dig_error *const error)
 {
-    const int code = sqlite3_errcode(db);
+    const int code = sqlite3_errcode(db->sql);
     if (code == SQLITE_NOMEM) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", db->path);
     }
     if (code == SQLITE_NOTADB) {
         return dig_error_set(error, DIG_EINVAL,
-                             "%s: not a digsight table, expected a file made by digtable", path);
+                             "%s: not a digsight table, expected a file made by digtable",
+                             db->path);
     }
     if (code == SQLITE_CORRUPT) {
-        return dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", path,
-                             sqlite3_errmsg(db));
+        return dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table",
+                             db->path, sqlite3_errmsg(db->sql));
     }
-    const int extended = sqlite3_extended_errcode(db);
+    const int extended = sqlite3_extended_errcode(db->sql);
     if (code == SQLITE_CANTOPEN || extended == SQLITE_IOERR_SHMOPEN ||
         extended == SQLITE_IOERR_SHMSIZE || extended == SQLITE_IOERR_SHMMAP) {
         return dig_error_set(error, DIG_EIO,
                              "%s: it, or a journal beside it, cannot be opened, expected regular "
                              "files and a journal of this table alone",
-                             path);
+                             db->path);
     }
-    return dig_error_set(error, DIG_EIO, "%s: %s", path, sqlite3_errmsg(db));
+    return dig_error_set(error, DIG_EIO, "%s: %s", db->path, sqlite3_errmsg(db->sql));
 }
 
-enum dig_status dig_sql_run(sqlite3 *const db, const char *const path, const char *const sql,
+enum dig_status dig_sql_run(const struct dig_db *const db, const char *const sql,
                             struct dig_error *const error)
 {
-    return sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK ? DIG_OK
-                                                                : dig_sql_refuse(db, path, error);
+    return sqlite3_exec(db->sql, sql, NULL, NULL, NULL) == SQLITE_OK ? DIG_OK
+                                                                     : dig_sql_refuse(db, error);
 }
 
-enum dig_status dig_sql_prepare(sqlite3 *const db, const char *const path, const char *const sql,
+enum dig_status dig_sql_prepare(const struct dig_db *const db, const char *const sql,
                                 sqlite3_stmt **const s, struct dig_error *const error)
 {
-    return sqlite3_prepare_v2(db, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
-                                                                 : dig_sql_refuse(db, path, error);
+    return sqlite3_prepare_v2(db->sql, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
+                                                                      : dig_sql_refuse(db, error);
 }
 
-enum dig_status dig_sql_first(sqlite3 *const db, const char *const path, const char *const sql,
+enum dig_status dig_sql_first(const struct dig_db *const db, const char *const sql,
                               sqlite3_stmt **const s, struct dig_error *const error)
 {
-    if (sqlite3_prepare_v2(db, sql, -1, s, NULL) == SQLITE_OK && sqlite3_step(*s) == SQLITE_ROW) {
+    if (sqlite3_prepare_v2(db->sql, sql, -1, s, NULL) == SQLITE_OK &&
+        sqlite3_step(*s) == SQLITE_ROW) {
         return DIG_OK;
     }
-    const enum dig_status status = dig_sql_refuse(db, path, error);
+    const enum dig_status status = dig_sql_refuse(db, error);
     (void)sqlite3_finalize(*s);
     *s = NULL;
     return status;
 }
 
-bool dig_sql_row(sqlite3_stmt *const s, const char *const path, enum dig_status *const status,
-                 struct dig_error *const error)
+bool dig_sql_row(const struct dig_db *const db, sqlite3_stmt *const s,
+                 enum dig_status *const status, struct dig_error *const error)
 {
     const int step = *status == DIG_OK ? sqlite3_step(s) : SQLITE_DONE;
     if (step != SQLITE_ROW && step != SQLITE_DONE) {
-        *status = dig_sql_refuse(sqlite3_db_handle(s), path, error);
+        *status = dig_sql_refuse(db, error);
     }
     return step == SQLITE_ROW;
 }
 
-enum dig_status dig_sql_done(sqlite3_stmt *const s, const char *const path,
+enum dig_status dig_sql_done(const struct dig_db *const db, sqlite3_stmt *const s,
                              struct dig_error *const error)
 {
     const enum dig_status status =
-        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(sqlite3_db_handle(s), path, error);
+        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(db, error);
     (void)sqlite3_finalize(s);
     return status;
 }
@@ -157,7 +158,7 @@ void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_hea
     dig_scene_hash(scene, head->scene_hash);
 }
 
-static enum dig_status insert_scene(sqlite3 *const db, const char *const path,
+static enum dig_status insert_scene(const struct dig_db *const    db,
                                     const struct dig_scene *const scene,
                                     struct dig_error *const       error)
 {
@@ -166,9 +167,9 @@ static enum dig_status insert_scene(sqlite3 *const db, const char *const path,
     dig_scene_canonical(scene, text);
     dig_table_head_of(scene, &head);
 
-    sqlite3_stmt         *s      = NULL;
-    const enum dig_status status = dig_sql_prepare(
-        db, path, "INSERT INTO scene VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", &s, error);
+    sqlite3_stmt         *s = NULL;
+    const enum dig_status status =
+        dig_sql_prepare(db, "INSERT INTO scene VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -180,16 +181,16 @@ static enum dig_status insert_scene(sqlite3 *const db, const char *const path,
     (void)sqlite3_bind_double(s, 6, head.young_Pa);
     (void)sqlite3_bind_double(s, 7, head.smooth_half_s);
     (void)sqlite3_bind_int(s, 8, DIG_CURVE_POINTS);
-    return dig_sql_done(s, path, error);
+    return dig_sql_done(db, s, error);
 }
 
-static enum dig_status insert_trajectory(sqlite3 *const db, const char *const path, const int id,
+static enum dig_status insert_trajectory(const struct dig_db *const db, const int id,
                                          const struct dig_trajectory *const t,
                                          struct dig_error *const            error)
 {
     sqlite3_stmt   *s = NULL;
     enum dig_status status =
-        dig_sql_prepare(db, path, "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)", &s, error);
+        dig_sql_prepare(db, "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)", &s, error);
     if (status != DIG_OK) {
         return status;
     }
@@ -198,11 +199,10 @@ static enum dig_status insert_trajectory(sqlite3 *const db, const char *const pa
     (void)sqlite3_bind_double(s, 3, t->theta0_rad);
     (void)sqlite3_bind_double(s, 4, t->start_x_m);
     (void)sqlite3_bind_double(s, 5, t->start_z_m);
-    status = dig_sql_done(s, path, error);
+    status = dig_sql_done(db, s, error);
     for (size_t i = 0; status == DIG_OK && i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
-        status =
-            dig_sql_prepare(db, path, "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)", &s, error);
+        status = dig_sql_prepare(db, "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)", &s, error);
         if (status != DIG_OK) {
             return status;
         }
@@ -213,57 +213,55 @@ static enum dig_status insert_trajectory(sqlite3 *const db, const char *const pa
         (void)sqlite3_bind_double(s, 5, p->vx_mps);
         (void)sqlite3_bind_double(s, 6, p->vz_mps);
         (void)sqlite3_bind_double(s, 7, p->omega_radps);
-        status = dig_sql_done(s, path, error);
+        status = dig_sql_done(db, s, error);
     }
     return status;
 }
 
-enum dig_status dig_schema_tables(sqlite3 *const db, const char *const path, const int version,
+enum dig_status dig_schema_tables(const struct dig_db *const db, const int version,
                                   struct dig_error *const error)
 {
     static const char ground_sql[] = DIG_GROUND_SQL("ground");
-    enum dig_status   status       = dig_sql_run(db, path, common_sql, error);
+    enum dig_status   status       = dig_sql_run(db, common_sql, error);
     if (status == DIG_OK) {
-        status = dig_sql_run(
-            db, path, version == DIG_TABLE_VERSION_PLAIN ? plain_ground_sql : ground_sql, error);
+        status = dig_sql_run(db, version == DIG_TABLE_VERSION_PLAIN ? plain_ground_sql : ground_sql,
+                             error);
     }
-    return status == DIG_OK && version >= DIG_TABLE_VERSION
-               ? dig_sql_run(db, path, DIG_SEAL_SQL, error)
-               : status;
+    return status == DIG_OK && version >= DIG_TABLE_VERSION ? dig_sql_run(db, DIG_SEAL_SQL, error)
+                                                            : status;
 }
 
-enum dig_status dig_schema_number(sqlite3 *const db, const char *const path,
-                                  struct dig_error *const error)
+enum dig_status dig_schema_number(const struct dig_db *const db, struct dig_error *const error)
 {
     char ids[128];
     (void)snprintf(ids, sizeof ids, "PRAGMA application_id = %d; PRAGMA user_version = %d;",
                    DIG_TABLE_APPLICATION_ID, DIG_TABLE_VERSION);
-    return dig_sql_run(db, path, ids, error);
+    return dig_sql_run(db, ids, error);
 }
 
-enum dig_status dig_schema_create(sqlite3 *const db, const char *const path,
+enum dig_status dig_schema_create(const struct dig_db *const    db,
                                   const struct dig_scene *const scene,
                                   struct dig_error *const       error)
 {
-    enum dig_status status = dig_sql_run(db, path, "BEGIN IMMEDIATE", error);
+    enum dig_status status = dig_sql_run(db, "BEGIN IMMEDIATE", error);
     if (status != DIG_OK) {
         return status;
     }
-    status = dig_schema_tables(db, path, DIG_TABLE_VERSION, error);
+    status = dig_schema_tables(db, DIG_TABLE_VERSION, error);
     if (status == DIG_OK) {
-        status = dig_schema_number(db, path, error);
+        status = dig_schema_number(db, error);
     }
     if (status == DIG_OK) {
-        status = insert_scene(db, path, scene, error);
+        status = insert_scene(db, scene, error);
     }
     for (size_t i = 0; status == DIG_OK && i < scene->trajectories; i++) {
-        status = insert_trajectory(db, path, (int)i, &scene->trajectory[i], error);
+        status = insert_trajectory(db, (int)i, &scene->trajectory[i], error);
     }
     if (status == DIG_OK) {
-        status = dig_sql_run(db, path, "COMMIT", error);
+        status = dig_sql_run(db, "COMMIT", error);
     }
     if (status != DIG_OK) {
-        (void)sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
+        (void)sqlite3_exec(db->sql, "ROLLBACK", NULL, NULL, NULL);
     }
     return status;
 }

@@ -44,54 +44,57 @@ struct dig_table_head {
     int                   version;        // of the file
 };
 
+/// An open database, and its file's name, which lives as long.
+struct dig_db {
+    sqlite3    *sql;
+    const char *path;
+};
+
 /// What a scene's table says of itself.
 void dig_table_head_of(const struct dig_scene *scene, struct dig_table_head *head);
 
 /// *error becomes "PATH: what SQLite says"; the status is that of a failed call.
-enum dig_status dig_sql_refuse(sqlite3 *db, const char *path, struct dig_error *error);
+enum dig_status dig_sql_refuse(const struct dig_db *db, struct dig_error *error);
 
 /// Settings of every connection, before anything is read: a file from elsewhere is not trusted. It
 /// runs no triggers, views or functions of its own, nor has more, or larger, than a table needs.
-DIG_MUST_CHECK enum dig_status dig_sql_setup(sqlite3 *db, const char *path,
-                                             struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_sql_setup(const struct dig_db *db, struct dig_error *error);
 
 /// Runs statements that return no rows.
-DIG_MUST_CHECK enum dig_status dig_sql_run(sqlite3 *db, const char *path, const char *sql,
+DIG_MUST_CHECK enum dig_status dig_sql_run(const struct dig_db *db, const char *sql,
                                            struct dig_error *error);
 
 /// Prepares a statement. On failure too *s is for sqlite3_finalize().
-DIG_MUST_CHECK enum dig_status dig_sql_prepare(sqlite3 *db, const char *path, const char *sql,
+DIG_MUST_CHECK enum dig_status dig_sql_prepare(const struct dig_db *db, const char *sql,
                                                sqlite3_stmt **s, struct dig_error *error);
 
 /// Prepares a statement and steps to its first row, which there must be. On failure it is
 /// finalized.
-DIG_MUST_CHECK enum dig_status dig_sql_first(sqlite3 *db, const char *path, const char *sql,
+DIG_MUST_CHECK enum dig_status dig_sql_first(const struct dig_db *db, const char *sql,
                                              sqlite3_stmt **s, struct dig_error *error);
 
 /// Where *status is DIG_OK, steps to the next row. False at the end, and when that fails, which
 /// *status then says.
-bool dig_sql_row(sqlite3_stmt *s, const char *path, enum dig_status *status,
+bool dig_sql_row(const struct dig_db *db, sqlite3_stmt *s, enum dig_status *status,
                  struct dig_error *error);
 
 /// Runs a statement that gives no rows, and finalizes it.
-DIG_MUST_CHECK enum dig_status dig_sql_done(sqlite3_stmt *s, const char *path,
+DIG_MUST_CHECK enum dig_status dig_sql_done(const struct dig_db *db, sqlite3_stmt *s,
                                             struct dig_error *error);
 
 /// Makes an empty database a table of this version without rows; its number is not written.
-DIG_MUST_CHECK enum dig_status dig_schema_tables(sqlite3 *db, const char *path, int version,
+DIG_MUST_CHECK enum dig_status dig_schema_tables(const struct dig_db *db, int version,
                                                  struct dig_error *error);
 
 /// Writes application_id and user_version.
-DIG_MUST_CHECK enum dig_status dig_schema_number(sqlite3 *db, const char *path,
-                                                 struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_schema_number(const struct dig_db *db, struct dig_error *error);
 
 /// Makes an empty database the table of this scene, in one transaction.
-DIG_MUST_CHECK enum dig_status dig_schema_create(sqlite3 *db, const char *path,
-                                                 const struct dig_scene *scene,
-                                                 struct dig_error       *error);
+DIG_MUST_CHECK enum dig_status
+dig_schema_create(const struct dig_db *db, const struct dig_scene *scene, struct dig_error *error);
 
 /// Refuses a file whose schema is not, word for word, that of a table of this version.
-DIG_MUST_CHECK enum dig_status dig_schema_compare(sqlite3 *db, const char *path, int version,
+DIG_MUST_CHECK enum dig_status dig_schema_compare(const struct dig_db *db, int version,
                                                   struct dig_error *error);
 
 /// Refuses what is no table (DIG_EINVAL), a version not known (DIG_ESCHEMA, all named), and a
@@ -99,13 +102,12 @@ DIG_MUST_CHECK enum dig_status dig_schema_compare(sqlite3 *db, const char *path,
 /// (tables/schema/seal.h). Writes *head on success only. Reads the whole file. From then on the
 /// connection reads `ground` with depth and attack_rad whatever the file's version: where the file
 /// has none, in a temporary view. What it found holds for what is read in the same transaction.
-DIG_MUST_CHECK enum dig_status dig_schema_check(sqlite3 *db, const char *path,
-                                                struct dig_table_head *head,
-                                                struct dig_error      *error);
+DIG_MUST_CHECK enum dig_status
+dig_schema_check(const struct dig_db *db, struct dig_table_head *head, struct dig_error *error);
 
 /// Makes a table of an older version one of ours: digs without an approach become plain, entries
 /// are sealed. In no transaction; all or nothing.
-DIG_MUST_CHECK enum dig_status dig_schema_upgrade(sqlite3 *db, const char *path, int version,
+DIG_MUST_CHECK enum dig_status dig_schema_upgrade(const struct dig_db *db, int version,
                                                   struct dig_error *error);
 
 #endif // DIG_TABLES_SCHEMA_SCHEMA_H

@@ -19,17 +19,15 @@ static const char runs_sql[] =
 
 // Both statements, used again for one entry after the other.
 struct sealer {
-    sqlite3          *db;
-    const char       *path;
-    sqlite3_stmt     *entry, *runs;
-    struct dig_error *error;
+    const struct dig_db *db;
+    sqlite3_stmt        *entry, *runs;
+    struct dig_error    *error;
 };
 
 static enum dig_status begin(struct sealer *const s)
 {
-    const enum dig_status status = dig_sql_prepare(s->db, s->path, entry_sql, &s->entry, s->error);
-    return status == DIG_OK ? dig_sql_prepare(s->db, s->path, runs_sql, &s->runs, s->error)
-                            : status;
+    const enum dig_status status = dig_sql_prepare(s->db, entry_sql, &s->entry, s->error);
+    return status == DIG_OK ? dig_sql_prepare(s->db, runs_sql, &s->runs, s->error) : status;
 }
 
 static void end(struct sealer *const s)
@@ -80,7 +78,7 @@ static enum dig_status add_rows(const struct sealer *const s, sqlite3_stmt *cons
     (void)sqlite3_bind_int64(rows, 1, ground);
     (void)sqlite3_bind_int64(rows, 2, trajectory);
     enum dig_status status = DIG_OK;
-    while (dig_sql_row(rows, s->path, &status, s->error)) {
+    while (dig_sql_row(s->db, rows, &status, s->error)) {
         add_row(hash, rows);
     }
     return status;
@@ -108,7 +106,7 @@ static enum dig_status write_one(const struct sealer *const s, const sqlite3_int
     sqlite3_int64   sum    = 0;
     enum dig_status status = sum_of(s, ground, trajectory, &sum);
     if (status == DIG_OK) {
-        status = dig_sql_prepare(s->db, s->path,
+        status = dig_sql_prepare(s->db,
                                  "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
                                  "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3",
                                  &into, s->error);
@@ -119,14 +117,13 @@ static enum dig_status write_one(const struct sealer *const s, const sqlite3_int
     (void)sqlite3_bind_int64(into, 1, ground);
     (void)sqlite3_bind_int64(into, 2, trajectory);
     (void)sqlite3_bind_int64(into, 3, sum);
-    return dig_sql_done(into, s->path, s->error);
+    return dig_sql_done(s->db, into, s->error);
 }
 
-enum dig_status dig_seal_write(sqlite3 *const db, const char *const path,
-                               const sqlite3_int64 ground, const size_t trajectory,
-                               struct dig_error *const error)
+enum dig_status dig_seal_write(const struct dig_db *const db, const sqlite3_int64 ground,
+                               const size_t trajectory, struct dig_error *const error)
 {
-    struct sealer   s      = { .db = db, .path = path, .error = error };
+    struct sealer   s      = { .db = db, .error = error };
     enum dig_status status = begin(&s);
     if (status == DIG_OK) {
         status = write_one(&s, ground, (sqlite3_int64)trajectory);
@@ -146,7 +143,7 @@ static enum dig_status check_one(const struct sealer *const s, sqlite3_stmt *con
         status = dig_error_set(s->error, DIG_EINVAL,
                                "%s: damaged: entry of ground %lld on trajectory %lld, or one of "
                                "its runs, is not what was stored, expected what its seal says",
-                               s->path, (long long)ground, (long long)trajectory);
+                               s->db->path, (long long)ground, (long long)trajectory);
     }
     return status;
 }
@@ -156,8 +153,8 @@ static enum dig_status each(const struct sealer *const s, const char *const sql,
                             enum dig_status (*const what)(const struct sealer *, sqlite3_stmt *))
 {
     sqlite3_stmt   *entry  = NULL;
-    enum dig_status status = dig_sql_prepare(s->db, s->path, sql, &entry, s->error);
-    while (dig_sql_row(entry, s->path, &status, s->error)) {
+    enum dig_status status = dig_sql_prepare(s->db, sql, &entry, s->error);
+    while (dig_sql_row(s->db, entry, &status, s->error)) {
         status = what(s, entry);
     }
     (void)sqlite3_finalize(entry);
@@ -169,10 +166,9 @@ static enum dig_status write_of(const struct sealer *const s, sqlite3_stmt *cons
     return write_one(s, sqlite3_column_int64(entry, 0), sqlite3_column_int64(entry, 1));
 }
 
-enum dig_status dig_seal_write_all(sqlite3 *const db, const char *const path,
-                                   struct dig_error *const error)
+enum dig_status dig_seal_write_all(const struct dig_db *const db, struct dig_error *const error)
 {
-    struct sealer   s      = { .db = db, .path = path, .error = error };
+    struct sealer   s      = { .db = db, .error = error };
     enum dig_status status = begin(&s);
     if (status == DIG_OK) {
         status = each(&s, "SELECT ground, trajectory FROM entry ORDER BY 1, 2", write_of);
@@ -186,13 +182,12 @@ static enum dig_status refuse_run(const struct sealer *const s, sqlite3_stmt *co
     return dig_error_set(s->error, DIG_EINVAL,
                          "%s: damaged: run %lld is of no entry, expected one of its ground and "
                          "trajectory",
-                         s->path, (long long)sqlite3_column_int64(run, 0));
+                         s->db->path, (long long)sqlite3_column_int64(run, 0));
 }
 
-enum dig_status dig_seal_check(sqlite3 *const db, const char *const path,
-                               struct dig_error *const error)
+enum dig_status dig_seal_check(const struct dig_db *const db, struct dig_error *const error)
 {
-    struct sealer   s      = { .db = db, .path = path, .error = error };
+    struct sealer   s      = { .db = db, .error = error };
     enum dig_status status = begin(&s);
     if (status == DIG_OK) {
         status = each(&s,

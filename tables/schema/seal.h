@@ -11,9 +11,8 @@
 #ifndef DIG_TABLES_SCHEMA_SEAL_H
 #define DIG_TABLES_SCHEMA_SEAL_H
 
-#include "core/error.h"
+#include "tables/schema/schema.h"
 
-#include <sqlite3.h>
 #include <stddef.h>
 
 #define DIG_SEAL_SQL                                                                               \
@@ -26,16 +25,14 @@
     ") STRICT;"
 
 /// Seals one entry as it and its runs stand, in place of what was there.
-DIG_MUST_CHECK enum dig_status dig_seal_write(sqlite3 *db, const char *path, sqlite3_int64 ground,
+DIG_MUST_CHECK enum dig_status dig_seal_write(const struct dig_db *db, sqlite3_int64 ground,
                                               size_t trajectory, struct dig_error *error);
 
 /// Seals every entry.
-DIG_MUST_CHECK enum dig_status dig_seal_write_all(sqlite3 *db, const char *path,
-                                                  struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_seal_write_all(const struct dig_db *db, struct dig_error *error);
 
 /// Refuses an entry that is not sealed, or is not, with its runs, what was sealed, and a run
 /// without an entry: DIG_EINVAL, the first one named. Reads every run.
-DIG_MUST_CHECK enum dig_status dig_seal_check(sqlite3 *db, const char *path,
-                                              struct dig_error *error);
+DIG_MUST_CHECK enum dig_status dig_seal_check(const struct dig_db *db, struct dig_error *error);
 
 #endif // DIG_TABLES_SCHEMA_SEAL_H

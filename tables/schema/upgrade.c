@@ -14,35 +14,35 @@ static const char approach_sql[] = "DROP VIEW temp.ground;" DIG_GROUND_SQL("grou
     "DROP TABLE main.ground;"
     "ALTER TABLE ground_new RENAME TO ground;";
 
-static enum dig_status upgrade(sqlite3 *const db, const char *const path, const int version,
+static enum dig_status upgrade(const struct dig_db *const db, const int version,
                                struct dig_error *const error)
 {
-    enum dig_status status = dig_sql_run(db, path, "BEGIN IMMEDIATE", error);
+    enum dig_status status = dig_sql_run(db, "BEGIN IMMEDIATE", error);
     if (status == DIG_OK && version == DIG_TABLE_VERSION_PLAIN) {
-        status = dig_sql_run(db, path, approach_sql, error);
+        status = dig_sql_run(db, approach_sql, error);
     }
     if (status == DIG_OK) {
-        status = dig_sql_run(db, path, DIG_SEAL_SQL, error);
+        status = dig_sql_run(db, DIG_SEAL_SQL, error);
     }
     if (status == DIG_OK) {
-        status = dig_seal_write_all(db, path, error);
+        status = dig_seal_write_all(db, error);
     }
     if (status == DIG_OK) {
-        status = dig_schema_number(db, path, error);
+        status = dig_schema_number(db, error);
     }
-    return status == DIG_OK ? dig_sql_run(db, path, "COMMIT", error) : status;
+    return status == DIG_OK ? dig_sql_run(db, "COMMIT", error) : status;
 }
 
-enum dig_status dig_schema_upgrade(sqlite3 *const db, const char *const path, const int version,
+enum dig_status dig_schema_upgrade(const struct dig_db *const db, const int version,
                                    struct dig_error *const error)
 {
-    enum dig_status status = dig_sql_run(db, path, "PRAGMA foreign_keys = OFF", error);
+    enum dig_status status = dig_sql_run(db, "PRAGMA foreign_keys = OFF", error);
     if (status == DIG_OK) {
-        status = upgrade(db, path, version, error);
+        status = upgrade(db, version, error);
     }
     if (status != DIG_OK) {
-        (void)sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
+        (void)sqlite3_exec(db->sql, "ROLLBACK", NULL, NULL, NULL);
         return status;
     }
-    return dig_sql_run(db, path, "PRAGMA foreign_keys = ON", error);
+    return dig_sql_run(db, "PRAGMA foreign_keys = ON", error);
 }
