@@ -1,4 +1,4 @@
-#include "tables/load_covariance.h"
+// The covariance of digs of one gravel, from the runs of a table.
 
 #include "tables/derive.h"
 #include "tables/store_private.h"

@@ -3,7 +3,6 @@
 #include "tables/load.h"
 
 #include "tables/grounds.h"
-#include "tables/load_covariance.h"
 #include "tables/store_private.h"
 
 #include <assert.h>

@@ -32,6 +32,14 @@ DIG_MUST_CHECK enum dig_status dig_sql_load(const struct dig_db         *db,
                                             const struct dig_table_head *head,
                                             struct dig_curve_set **set, struct dig_error *error);
 
+/// Fills set->covariance from all runs without an effect, as the trajectories stand. Of a gravel
+/// that was dug once nothing is learnt. Reads every such run: 0.1 ms each. DIG_EINVAL: a run that
+/// cannot be one. Call it in a transaction.
+DIG_MUST_CHECK enum dig_status dig_sql_load_covariance(const struct dig_db         *db,
+                                                       const struct dig_table_head *head,
+                                                       struct dig_curve_set        *set,
+                                                       struct dig_error            *error);
+
 /// Binds the parameters 1 … 7 of a statement to friction, rolling, density, effect, magnitude,
 /// depth and attack.
 void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);

@@ -1,10 +1,9 @@
-// Tests for tools/rig/truth.c and record.c
+// Tests for tools/rig/record.c
 
-#include "tools/rig/truth.h"
+#include "tools/rig/commands.h"
 
 #include "files/recording_csv.h"
 #include "tests/scratch.h"
-#include "tools/rig/record.h"
 
 static struct dig_rig_row rows[] = {
     {
@@ -26,10 +25,12 @@ static const struct dig_rig_track track = { .rows = 2, .step_s = 0.005, .row = r
 // Force in the rig's axes: a push towards machine +X is one towards the rig's -x.
 TEST(truth_is_written_as_the_example_of_the_formats_stands)
 {
-    const char *const path = scratch_path("truth.csv");
-    assert_int_equal(dig_rig_truth_write(path, &track, NULL), DIG_OK);
+    const struct dig_machine     machine = { .pressure_step_Pa = 0.0 };
+    const struct dig_rig_options options = { .out   = scratch_path("run.csv"),
+                                             .truth = scratch_path("truth.csv") };
+    assert_int_equal(dig_rig_record(&machine, &options, &track, NULL), DIG_OK);
     size_t      size[2];
-    char *const written = scratch_read(path, &size[0]);
+    char *const written = scratch_read(options.truth, &size[0]);
     char *const example = scratch_read("tests/data/formats/rig_truth.csv", &size[1]);
     assert_string_equal(written, example);
     free(written);

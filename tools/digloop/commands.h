@@ -45,12 +45,6 @@ DIG_MUST_CHECK enum dig_status digloop_design(const struct digloop_job *job,
 DIG_MUST_CHECK enum dig_status digloop_check(const struct digloop_options *options, bool *wrong,
                                              struct dig_error *error);
 
-/// Writes the model file asked for: the trace's gravel and effects, with the files they need.
-DIG_MUST_CHECK enum dig_status digloop_save_model(const struct digloop_job *job,
-                                                  const char               *effects,
-                                                  const struct dig_trace   *trace,
-                                                  struct dig_error         *error);
-
 /// Fills trace->command where the verdict holds effects of the soil that beds can hold: shell lines
 /// that write a grid and run digtable on it, for beds of the gravel found with these effects in
 /// them, in the table of effects beside the table. Nothing without free air, or where a magnitude

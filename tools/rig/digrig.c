@@ -8,10 +8,9 @@
 #include "files/recording_csv.h"
 #include "files/scene_yaml.h"
 #include "tools/rig/buses.h"
+#include "tools/rig/commands.h"
 #include "tools/rig/motion/track.h"
 #include "tools/rig/options.h"
-#include "tools/rig/record.h"
-#include "tools/rig/serve.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "tools/rig/serve.h"
+#include "tools/rig/commands.h"
 
 #include "tools/rig/bus/fault.h"
 #include "tools/rig/buses.h"
