@@ -3,10 +3,10 @@
 
 #include "firmware_host/bus/can_message.h"
 
+#include "core/units.h"
+
 #include <assert.h>
 #include <string.h>
-
-#define NS_PER_S 1000000000LL
 
 void dig_can_filters(const struct dig_signal_map *const map,
                      struct can_filter                  filter[const DIG_GROUPS_MAX])
@@ -23,7 +23,7 @@ void dig_can_filters(const struct dig_signal_map *const map,
 
 static int64_t to_ns(const struct timespec *const t)
 {
-    return (int64_t)t->tv_sec * NS_PER_S + t->tv_nsec;
+    return (int64_t)t->tv_sec * DIG_NS_PER_S + t->tv_nsec;
 }
 
 // The ancillary data of that kind; NULL: none.
@@ -48,7 +48,7 @@ int64_t dig_can_stamp_ns(struct msghdr *const message, const struct timespec *co
     struct timespec stamp;
     memcpy(&stamp, bytes, sizeof stamp);
     const int64_t age_ns = to_ns(wall) - to_ns(&stamp);
-    return age_ns >= 0 && age_ns < NS_PER_S ? now_ns - age_ns : now_ns;
+    return age_ns >= 0 && age_ns < DIG_NS_PER_S ? now_ns - age_ns : now_ns;
 }
 
 uint32_t dig_can_dropped(struct msghdr *const message, const uint32_t before)

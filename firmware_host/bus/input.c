@@ -1,20 +1,22 @@
 #include "firmware_host/bus/input.h"
 
+#include "core/units.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 
-#define NS_PER_S      1000000000LL
-#define FIRST_PAUSE   (NS_PER_S / 4)
-#define LONGEST_PAUSE (5 * NS_PER_S)
-#define SLICE         (NS_PER_S / 20)
+#define FIRST_PAUSE   (DIG_NS_PER_S / 4)
+#define LONGEST_PAUSE (5 * DIG_NS_PER_S)
+#define SLICE         (DIG_NS_PER_S / 20)
 
 int64_t dig_input_now_ns(void)
 {
     struct timespec t;
     (void)clock_gettime(CLOCK_MONOTONIC, &t);
-    return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+    return (int64_t)t.tv_sec * DIG_NS_PER_S + t.tv_nsec;
 }
 
 void dig_input_pause(const struct dig_input *const input, const int64_t pause_ns)
@@ -74,7 +76,9 @@ void dig_input_run(struct dig_input *const input)
             atomic_store(&input->connected, true);
             read_on(input, &error);
             atomic_store(&input->connected, false);
-            input->ops->close(input);
+            if (input->ops->close != NULL) {
+                input->ops->close(input);
+            }
 
             // A source that opens but never says a word is no better than one that does not open.
             if (atomic_load(&input->frames) > frames) {
@@ -92,7 +96,10 @@ void dig_input_run(struct dig_input *const input)
 void dig_input_destroy(struct dig_input *const input)
 {
     if (input != NULL && input->ops != NULL) {
-        input->ops->destroy(input);
+        if (input->ops->finish != NULL) {
+            input->ops->finish(input);
+        }
+        free(input->source);
         input->ops = NULL;
     }
 }

@@ -20,10 +20,10 @@ struct dig_input_ops {
     /// Waits at most about 100 ms for readings and puts them by dig_input_put(). DIG_OK also when
     /// none came. DIG_EIO: the source is gone; it will be closed and opened again.
     enum dig_status (*read)(struct dig_input *input, struct dig_error *error);
-    /// Closes what open() opened.
+    /// Closes what open() opened; NULL: nothing.
     void (*close)(struct dig_input *input);
-    /// Frees the source.
-    void (*destroy)(struct dig_input *input);
+    /// Frees what the source holds; NULL: nothing.
+    void (*finish)(struct dig_input *input);
 };
 
 /// A line for the log, from a thread to the publisher.
@@ -34,7 +34,7 @@ struct dig_log_line {
 /// The thread's common part. Counters are written by it and read by others.
 struct dig_input {
     const struct dig_input_ops *ops;
-    void                       *source; // of the ops
+    void                       *source; // of the ops, malloc'ed
     char                        name[160];
     struct dig_ring            *readings;
     struct dig_latest          *log; // out: struct dig_log_line, the last error; "" when it is over

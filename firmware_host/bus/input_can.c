@@ -180,12 +180,7 @@ static void close_can(struct dig_input *const input)
     s->fd = -1;
 }
 
-static void destroy_can(struct dig_input *const input)
-{
-    free(input->source);
-}
-
-static const struct dig_input_ops ops = { open_can, read_can, close_can, destroy_can };
+static const struct dig_input_ops ops = { open_can, read_can, close_can, NULL };
 
 enum dig_status dig_input_can_create(struct dig_input *const input, const char *const interface,
                                      const struct dig_signal_map *const map)

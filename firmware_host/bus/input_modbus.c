@@ -7,6 +7,7 @@
 // program did not run. A dispensable one that
 // is silent while the others answer is polled only now and then.
 
+#include "core/units.h"
 #include "firmware_host/bus/input.h"
 #include "firmware_host/bus/modbus_tcp.h"
 #include "firmware_host/bus/signal_map.h"
@@ -17,10 +18,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define NS_PER_S           1000000000LL
 #define RESPONSE_us        200000 // a server that is slower than this is taken for gone
 #define FAILURES_BORNE     5
-#define DISPENSABLE_ns     NS_PER_S // between polls of a block that can be done without and fails
+#define DISPENSABLE_ns     DIG_NS_PER_S // between polls of a block that can be done without and fails
 #define SILENCES_TOLERATED 3
 #define SILENT_s           5 // between polls of one that does not even answer
 
@@ -108,7 +108,7 @@ static void count_timeout(struct dig_input *const input, const size_t block)
             registers_of(input, group, "silent while others answer, asked every few seconds", "");
         dig_input_log(input, &error);
     }
-    s->next_ns[block] = dig_input_now_ns() + SILENT_s * NS_PER_S;
+    s->next_ns[block] = dig_input_now_ns() + SILENT_s * DIG_NS_PER_S;
 }
 
 // A poll that failed. A damaged frame, a refusal or a late answer is tolerated a few times; without
@@ -186,7 +186,7 @@ static int64_t longest_ns(const struct modbus_source *const s,
 {
     const int64_t bits = 22 * (8 + 5 + 2 * (int64_t)group->registers);
     return RESPONSE_us * 1000LL +
-           (s->address.host[0] != '\0' ? 0 : bits * NS_PER_S / s->address.baud);
+           (s->address.host[0] != '\0' ? 0 : bits * DIG_NS_PER_S / s->address.baud);
 }
 
 // 0, or -1 with errno.
@@ -216,7 +216,7 @@ static enum dig_status read_modbus(struct dig_input *const input, struct dig_err
     }
     // A late poll shifts the following ones: two polls in quick succession give nothing new.
     const double  poll_s    = group->poll_s > 0.0 ? group->poll_s : s->address.poll_s;
-    const int64_t period_ns = (int64_t)(poll_s * (double)NS_PER_S);
+    const int64_t period_ns = (int64_t)(poll_s * (double)DIG_NS_PER_S);
     *next                   = (now_ns > *next + period_ns ? now_ns : *next) + period_ns;
 
     uint16_t registers[DIG_REGISTERS_MAX];
@@ -252,12 +252,7 @@ static void close_modbus(struct dig_input *const input)
     s->bus = NULL;
 }
 
-static void destroy_modbus(struct dig_input *const input)
-{
-    free(input->source);
-}
-
-static const struct dig_input_ops ops = { open_modbus, read_modbus, close_modbus, destroy_modbus };
+static const struct dig_input_ops ops = { open_modbus, read_modbus, close_modbus, NULL };
 
 enum dig_status dig_input_modbus_create(struct dig_input *const                input,
                                         const struct dig_modbus_address *const address,

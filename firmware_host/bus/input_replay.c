@@ -67,19 +67,12 @@ static enum dig_status read_replay(struct dig_input *const input, struct dig_err
     return DIG_OK;
 }
 
-static void close_replay(struct dig_input *const input)
+static void finish_replay(struct dig_input *const input)
 {
-    (void)input;
+    dig_machine_recording_finish(&((struct replay *)input->source)->recording);
 }
 
-static void destroy_replay(struct dig_input *const input)
-{
-    struct replay *const replay = input->source;
-    dig_machine_recording_finish(&replay->recording);
-    free(replay);
-}
-
-static const struct dig_input_ops ops = { open_replay, read_replay, close_replay, destroy_replay };
+static const struct dig_input_ops ops = { open_replay, read_replay, NULL, finish_replay };
 
 enum dig_status dig_input_replay_create(struct dig_input *const             input,
                                         struct dig_machine_recording *const recording,

@@ -1,5 +1,6 @@
 #include "firmware_host/matching/gravel_state.h"
 
+#include "core/units.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
 #include "files/identity_json.h"
@@ -12,15 +13,8 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#define NS_PER_S 1000000000LL
-
 // A file this much younger than now is of a clock that was set back: its age is not known.
 static const double clock_back_s = 3600.0;
-
-static int64_t ns(const double seconds)
-{
-    return (int64_t)llround(fmin(seconds, 3e9) * (double)NS_PER_S);
-}
 
 enum dig_status dig_gravel_state_write(const char *const                    path,
                                        const struct dig_gravel_track *const track,
@@ -114,8 +108,8 @@ enum dig_status dig_gravel_state_read(const char *const path, const struct dig_c
         .any        = true,
         .valid      = true,
         .restored   = true,
-        .time_ns    = now_ns - ns(age_s),
-        .expires_ns = now_ns + ns(settings->expires_s - age_s),
+        .time_ns    = now_ns - dig_ns(age_s),
+        .expires_ns = now_ns + dig_ns(settings->expires_s - age_s),
         .drift      = (double)NAN,
 
         .path_measured = (double)NAN,

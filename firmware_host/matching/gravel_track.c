@@ -1,5 +1,6 @@
 #include "firmware_host/matching/gravel_track.h"
 
+#include "core/units.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
 
@@ -8,15 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define NS_PER_S 1000000000LL
-
 // A dig that fills the bucket by less than this share of the best one is not recommended.
 static const double least_filling = 0.5;
-
-static int64_t ns(const double seconds)
-{
-    return (int64_t)llround(fmin(seconds, 3e9) * (double)NS_PER_S);
-}
 
 struct dig_gravel_track
 dig_gravel_track_make(const struct dig_curve_set *const set, const struct dig_match *const match,
@@ -30,7 +24,7 @@ dig_gravel_track_make(const struct dig_curve_set *const set, const struct dig_ma
         .match      = *match,
         .nearest    = set->gravel[match->nearest],
         .time_ns    = now_ns,
-        .expires_ns = now_ns + ns(settings->expires_s),
+        .expires_ns = now_ns + dig_ns(settings->expires_s),
         .drift      = (double)NAN,
 
         .path_measured = dig->last - dig->first,

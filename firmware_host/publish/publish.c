@@ -1,5 +1,6 @@
 #include "firmware_host/publish/publish.h"
 
+#include "core/units.h"
 #include "firmware_host/publish/publish_log.h"
 #include "firmware_host/threads/notify.h"
 
@@ -7,7 +8,6 @@
 #include <string.h>
 #include <time.h>
 
-#define NS_PER_S 1000000000LL
 #define BURST    6        // records, two messages each
 #define AFTER_ns 250000LL // a turn comes so long after a tick began, or a quarter of a tick
 
@@ -29,9 +29,9 @@ static bool join(struct dig_publisher *const p, const int64_t now_ns)
     if (p->lcm_pause_ns == 0) {
         dig_publisher_log_limited(p, "%s; trying again", error.text);
     }
-    p->lcm_pause_ns = p->lcm_pause_ns == 0             ? NS_PER_S / 4
-                      : p->lcm_pause_ns < 4 * NS_PER_S ? 2 * p->lcm_pause_ns
-                                                       : 5 * NS_PER_S;
+    p->lcm_pause_ns = p->lcm_pause_ns == 0                 ? DIG_NS_PER_S / 4
+                      : p->lcm_pause_ns < 4 * DIG_NS_PER_S ? 2 * p->lcm_pause_ns
+                                                           : 5 * DIG_NS_PER_S;
     p->next_lcm_ns  = now_ns + p->lcm_pause_ns;
     return false;
 }
@@ -44,7 +44,7 @@ static void check_sent(struct dig_publisher *const p, const enum dig_status stat
         dig_publisher_log_limited(p, "LCM %s: sending failed; joining again", p->config->lcm_url);
         dig_output_destroy(p->output);
         p->output       = NULL;
-        p->lcm_pause_ns = NS_PER_S;
+        p->lcm_pause_ns = DIG_NS_PER_S;
         p->next_lcm_ns  = dig_input_now_ns() + p->lcm_pause_ns;
     }
 }
@@ -123,7 +123,7 @@ static void publish_matches(struct dig_publisher *const p, const int64_t now_ns)
         }
     }
     if (p->any_result && (news || now_ns >= p->next_match_ns) && p->output != NULL) {
-        p->next_match_ns = now_ns + NS_PER_S;
+        p->next_match_ns = now_ns + DIG_NS_PER_S;
         check_sent(p, dig_output_match(p->output, &p->result));
     }
 }
@@ -193,7 +193,7 @@ static void publish_health(struct dig_publisher *const p, const int64_t now_ns, 
         find_missing(p);
     }
     if ((news || now_ns >= p->next_health_ns) && p->output != NULL) {
-        p->next_health_ns = now_ns + NS_PER_S;
+        p->next_health_ns = now_ns + DIG_NS_PER_S;
         check_sent(p, dig_output_health(p->output, &p->health));
     }
 }
@@ -202,7 +202,7 @@ static void feed_watchdog(struct dig_publisher *const p, const int64_t now_ns)
 {
     const int64_t interval_ns = dig_notify_watchdog_ns();
     // Fed by the tick's status: a tick that hangs lets the watchdog expire.
-    const bool alive = now_ns - p->health.tick_status.time_ns < NS_PER_S;
+    const bool alive = now_ns - p->health.tick_status.time_ns < DIG_NS_PER_S;
     if (interval_ns > 0 && alive && now_ns >= p->next_watchdog_ns) {
         p->next_watchdog_ns = now_ns + interval_ns;
         (void)dig_notify("WATCHDOG=1");
@@ -217,8 +217,8 @@ static void wait_for_tick(const struct dig_publisher *const p)
     const int64_t         next_ns  = p->health.tick_status.time_ns + after_ns;
     const int64_t         late_ns  = dig_input_now_ns() - next_ns;
     const int64_t         due_ns = next_ns + (late_ns < 0 ? 0 : (late_ns / tick_ns + 1) * tick_ns);
-    const struct timespec due    = { .tv_sec  = (time_t)(due_ns / NS_PER_S),
-                                     .tv_nsec = (long)(due_ns % NS_PER_S) };
+    const struct timespec due    = { .tv_sec  = (time_t)(due_ns / DIG_NS_PER_S),
+                                     .tv_nsec = (long)(due_ns % DIG_NS_PER_S) };
     (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL);
 }
 

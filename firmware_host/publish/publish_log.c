@@ -9,8 +9,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#define NS_PER_S 1000000000LL
-
 __attribute__((format(printf, 2, 0))) static void put_line(const struct dig_publisher *const p,
                                                            const char *const format, va_list args)
 {
@@ -118,7 +116,7 @@ void dig_publisher_log_drops(struct dig_publisher *const p, const int64_t now_ns
         d->nan + d->not_available + d->out_of_range + d->frozen + malformed + p->health.lost;
     if (all > p->logged_drops && now_ns >= p->next_drops_ns) {
         p->logged_drops  = all;
-        p->next_drops_ns = now_ns + 10 * NS_PER_S;
+        p->next_drops_ns = now_ns + 10 * DIG_NS_PER_S;
         dig_publisher_log(p,
                           "dropped so far: %" PRId64 " not available, %" PRId64
                           " out of range, %" PRId64 " frozen, %" PRId64 " NaN, %" PRId64
@@ -137,7 +135,7 @@ void dig_publisher_show(struct dig_publisher *const p, const int64_t now_ns)
     if (p->console.show == NULL || now_ns < p->next_show_ns) {
         return;
     }
-    p->next_show_ns                     = now_ns + NS_PER_S / 2;
+    p->next_show_ns                     = now_ns + DIG_NS_PER_S / 2;
     const struct dig_estimate *const e  = &p->estimate;
     const bool                       on = e->trajectory >= 0 && p->record_count > 0;
     char                             gravel[96];

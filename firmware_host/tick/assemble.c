@@ -1,5 +1,7 @@
 #include "firmware_host/tick/assemble.h"
 
+#include "core/units.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -11,11 +13,6 @@ void dig_assembler_init(struct dig_assembler *const                assembler,
     assert(settings->time_scale > 0.0 && settings->groups <= DIG_GROUPS_MAX);
     memset(assembler, 0, sizeof *assembler);
     assembler->settings = *settings;
-}
-
-static int64_t ns(const double seconds)
-{
-    return (int64_t)llround(seconds * 1e9);
 }
 
 // Scales the time elapsed, not the time: hours on the machine stay exact to the nanosecond.
@@ -94,7 +91,7 @@ static bool watch_alive(struct dig_assembler *const a, const struct dig_reading 
     } else if (!a->alive_known) {
         return true; // the counter's own message has not come yet
     }
-    a->frozen = a->settings.has_alive && time_ns - a->alive_ns > ns(a->settings.frozen_s);
+    a->frozen = a->settings.has_alive && time_ns - a->alive_ns > dig_ns(a->settings.frozen_s);
     return moved || !reading->has_alive || !a->settings.repeats;
 }
 
@@ -120,7 +117,7 @@ static int64_t cycle_ns(const struct dig_assembler *const a, const unsigned grou
         }
         younger = older;
     }
-    const int64_t configured_ns = ns(a->settings.frame[group].cycle_s);
+    const int64_t configured_ns = dig_ns(a->settings.frame[group].cycle_s);
     return shortest_ns == INT64_MAX || shortest_ns < configured_ns ? configured_ns : shortest_ns;
 }
 
@@ -136,7 +133,7 @@ static bool is_silent(const struct dig_assembler *const a, const unsigned group,
     const struct dig_past_reading *const last     = past_of(a, group, 0);
     const int64_t                        since_ns = last != NULL ? last->time_ns : a->first_ns;
     const int64_t                        most_ns  = DIG_SILENT_CYCLES * cycle_ns(a, group);
-    return now_ns - since_ns > (most_ns > ns(DIG_SILENT_s) ? most_ns : ns(DIG_SILENT_s));
+    return now_ns - since_ns > (most_ns > dig_ns(DIG_SILENT_s) ? most_ns : dig_ns(DIG_SILENT_s));
 }
 
 // Counts a reading of this group, and finds the silent groups.
@@ -183,7 +180,7 @@ static bool is_due(const struct dig_assembler *const a, int64_t *const time_ns)
         youngest              = last_ns > youngest ? last_ns : youngest;
     }
     *time_ns = oldest;
-    return youngest >= oldest && youngest - oldest <= ns(a->settings.coherent_s);
+    return youngest >= oldest && youngest - oldest <= dig_ns(a->settings.coherent_s);
 }
 
 // A signal at a time: between the two readings around it; the younger alone where the older has no
@@ -217,7 +214,7 @@ static struct dig_sample sample_at(const struct dig_assembler *const a, const in
             a->carried[i] ? past_of(a, a->group_of[i], 0) : NULL;
         const bool old = last == NULL || a->silent[a->group_of[i]] ||
                          (dig_signal_is_optional((enum dig_signal)i) &&
-                          time_ns - last->time_ns > ns(a->settings.optional_s));
+                          time_ns - last->time_ns > dig_ns(a->settings.optional_s));
         if (!old) {
             interpolate(a, i, time_ns, &sample);
         }
@@ -255,7 +252,7 @@ bool dig_assembler_take(struct dig_assembler *const a, const struct dig_reading 
         a->alive_ns = reading->time_ns;
     }
     const int64_t time_ns =
-        machine_time(a, reading->time_ns) - ns(a->settings.frame[reading->group].delay_s);
+        machine_time(a, reading->time_ns) - dig_ns(a->settings.frame[reading->group].delay_s);
     if (!is_new_frame(a, reading, time_ns)) {
         return false;
     }

@@ -1,10 +1,10 @@
 #include "firmware_host/tick/loop.h"
 
+#include "core/units.h"
+
 #include <assert.h>
 #include <math.h>
 #include <time.h>
-
-#define NS_PER_S 1000000000LL
 
 const char *dig_prediction_state_str(const enum dig_prediction_state state)
 {
@@ -34,11 +34,6 @@ void dig_loop_init(struct dig_loop *const loop, const struct dig_loop_settings *
     dig_assembler_init(&loop->assembler, &settings->assembler);
 }
 
-static int64_t ns(const double seconds)
-{
-    return (int64_t)llround(seconds * (double)NS_PER_S);
-}
-
 // Steps the estimator by a sample that gives the moment; records the sample in any case. True when
 // there is an estimate.
 static bool take_sample(struct dig_loop *const loop, const struct dig_sample *const sample,
@@ -46,7 +41,7 @@ static bool take_sample(struct dig_loop *const loop, const struct dig_sample *co
 {
     struct dig_record record = { .sample     = *sample,
                                  .arrived_ns = arrived_ns,
-                                 .expires_ns = now_ns + ns(loop->settings.stale_s) };
+                                 .expires_ns = now_ns + dig_ns(loop->settings.stale_s) };
     if (dig_sample_has_moment(sample) &&
         dig_estimator_step(loop->estimator, sample, &loop->estimate) == DIG_OK) {
         loop->sampled_ns       = now_ns;
@@ -102,7 +97,7 @@ static void publish_prediction(struct dig_loop *const loop, const int64_t now_ns
     struct dig_prediction_record *const      record = &loop->published;
     const struct dig_prediction_basis *const basis  = loop->basis;
     record->time_ns                                 = loop->estimate.time_ns;
-    record->expires_ns                              = now_ns + ns(lifetime_s);
+    record->expires_ns                              = now_ns + dig_ns(lifetime_s);
     record->generation                              = loop->tick_status.generation;
     record->dig_count                               = basis != NULL ? basis->dig_count : 0;
     record->outside = basis != NULL && basis->known && basis->outside;
@@ -130,7 +125,7 @@ static void predict_next_dig(struct dig_loop *const loop, const int64_t now_ns)
     const int trajectories = (int)loop->set->trajectories;
     if (trajectories == 0 || loop->estimate.phase != DIG_PHASE_AIR ||
         loop->predicted_ns == now_ns ||
-        now_ns - loop->next_dig_ns < ns(loop->settings.next_dig_s) ||
+        now_ns - loop->next_dig_ns < dig_ns(loop->settings.next_dig_s) ||
         basis_state(loop, now_ns) != DIG_PREDICTION_VALID) {
         return;
     }
@@ -165,7 +160,7 @@ static enum dig_prediction_state predict_dig(struct dig_loop *const loop, const 
 // Publishes predictions of the dig in progress; a reason for having none is published once.
 static void publish_dig(struct dig_loop *const loop, const int64_t now_ns)
 {
-    if (now_ns - loop->predicted_ns < ns(loop->settings.prediction_s)) {
+    if (now_ns - loop->predicted_ns < dig_ns(loop->settings.prediction_s)) {
         return;
     }
     loop->published.prediction.valid      = false;
@@ -203,7 +198,7 @@ void dig_loop_tick(struct dig_loop *const loop, const int64_t now_ns)
     }
     exchange_digs(loop);
     loop->tick_status.fresh =
-        loop->sampled_ns > 0 && now_ns - loop->sampled_ns <= ns(loop->settings.stale_s);
+        loop->sampled_ns > 0 && now_ns - loop->sampled_ns <= dig_ns(loop->settings.stale_s);
     publish_dig(loop, now_ns);
     predict_next_dig(loop, now_ns);
 
@@ -219,13 +214,13 @@ static int64_t clock_ns(const clockid_t clock)
 {
     struct timespec t;
     (void)clock_gettime(clock, &t);
-    return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+    return (int64_t)t.tv_sec * DIG_NS_PER_S + t.tv_nsec;
 }
 
 void dig_loop_run(struct dig_loop *const loop, const atomic_bool *const stop)
 {
     assert(loop != NULL && stop != NULL);
-    const int64_t period_ns = ns(loop->settings.tick_s);
+    const int64_t period_ns = dig_ns(loop->settings.tick_s);
     int64_t       due_ns    = clock_ns(CLOCK_MONOTONIC);
     while (!atomic_load_explicit(stop, memory_order_relaxed)) {
         const int64_t start_ns = clock_ns(CLOCK_MONOTONIC);
@@ -243,8 +238,8 @@ void dig_loop_run(struct dig_loop *const loop, const atomic_bool *const stop)
         loop->tick_status.worst_tick_us     = fmax(loop->tick_status.worst_tick_us, took_us);
         loop->tick_status.worst_tick_cpu_us = fmax(loop->tick_status.worst_tick_cpu_us, cpu_us);
         due_ns += period_ns;
-        const struct timespec deadline = { .tv_sec  = (time_t)(due_ns / NS_PER_S),
-                                           .tv_nsec = (long)(due_ns % NS_PER_S) };
+        const struct timespec deadline = { .tv_sec  = (time_t)(due_ns / DIG_NS_PER_S),
+                                           .tv_nsec = (long)(due_ns % DIG_NS_PER_S) };
         (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL);
     }
 }
