@@ -39,7 +39,7 @@ gnuplot >"$work/picture.svg" <<PLOT
 set terminal svg noenhanced size 860,400 font 'sans-serif,14' background 'white'
 set title 'An actual dig, predicted from one simple dig: error $(printf %.2f "$(number error)"), noise floor $(printf %.2f "$(number noise_floor)")'
 set xlabel 'trajectory progress, %'; set ylabel 'moment about the bucket pin, N·m'
-set key top left reverse Left; set grid lc rgb '#dddddd'; set border 3; set tics nomirror; set yrange [0:2]
+set key top left reverse Left; set grid lc rgb '#dddddd'; set border 3; set tics nomirror; set yrange [*<0:*]
 plot '$work/predicted' using 1:(\$2-\$3):(\$2+\$3) with filledcurves fc rgb '#c8d7ec' title 'predicted, 90 % band of one dig', \
      '' using 1:2 with lines lw 2 dt (8,5) lc rgb '#1f5fa8' title 'predicted', \
      '$work/measured' with lines lw 2 lc rgb '#c0392b' title 'measured ($who)'
