@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WHITE_DRAWS = 199 };
-
 const char *dig_residual_channel_name(const enum dig_channel channel)
 {
     static const char *const name[DIG_FORCE_CHANNELS] = { "moment_Nm", "fx_N", "fz_N" };
@@ -149,6 +147,20 @@ static void fill_trends(const struct dig_trace_work *const w,
     }
 }
 
+// Where nothing was chosen, both are of the plain fit.
+static void fill_whiteness(const struct dig_trace_work *const w,
+                           struct dig_residuals *const        residuals)
+{
+    const struct dig_fitted *const plain  = &w->search->plain;
+    const struct dig_fitted *const chosen = &w->search->chosen;
+    const size_t                   draws  = w->settings->bootstraps - 1; // p in whole shares
+    const uint64_t                 seed   = w->settings->seed;
+    residuals->without                    = dig_portmanteau_judge(w->batch, plain, draws, seed);
+    residuals->with                       = fabs(chosen->misfit - plain->misfit) > 0.0
+                                                ? dig_portmanteau_judge(w->batch, chosen, draws, seed)
+                                                : residuals->without;
+}
+
 void dig_residuals_make(const struct dig_trace_work *const w,
                         const struct dig_trace_curves      curves[],
                         struct dig_residuals *const        residuals)
@@ -160,8 +172,5 @@ void dig_residuals_make(const struct dig_trace_work *const w,
         fill_dig(w, &curves[i], i, &residuals->dig[i]);
     }
     fill_trends(w, curves, residuals);
-    residuals->without =
-        dig_portmanteau_judge(w->batch, &w->search->plain, WHITE_DRAWS, w->settings->seed);
-    residuals->with =
-        dig_portmanteau_judge(w->batch, &w->search->chosen, WHITE_DRAWS, w->settings->seed);
+    fill_whiteness(w, residuals);
 }

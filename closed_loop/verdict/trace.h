@@ -80,7 +80,7 @@ struct dig_machine_side; // closed_loop/machine/machine_side.h
 struct dig_trace_settings {
     double   false_alarm; // 0.01
     uint64_t seed;        // of the bootstrap: the same campaign gives the same answer
-    size_t   bootstraps;  // 200
+    size_t   bootstraps;  // 200; at least 4
 };
 
 struct dig_trace_settings dig_trace_settings_default(void);
