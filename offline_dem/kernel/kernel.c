@@ -8,7 +8,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(__x86_64__) && defined(__GNUC__)
+// DIG_KERNEL_BASE: the baseline alone, for sanitizers and analyzers, which take as long over every
+// variant of the same lines.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(DIG_KERNEL_BASE)
 #define VARIANT_AVX2 __attribute__((target("avx2")))
 // GCC prefers half vectors where full ones might lower the clock; clang has no such option.
 #ifdef __clang__
@@ -16,14 +18,11 @@
 #else
 #define VARIANT_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")))
 #endif
-#else
-#define VARIANT_AVX2
-#define VARIANT_AVX512
 #endif
 
 enum dig_isa dig_kernel_best(void)
 {
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef VARIANT_AVX2
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl")) {
         return DIG_ISA_AVX512;
@@ -317,14 +316,18 @@ INLINED bool advance_body(const bool single, const double gravity_mps2[3], const
 
 // NOLINTEND(bugprone-macro-parentheses)
 VARIANTS(, base)
-VARIANTS(VARIANT_AVX2, avx2)
-VARIANTS(VARIANT_AVX512, avx512)
 
 // The variant of a function for an instruction set.
+#ifdef VARIANT_AVX2
+VARIANTS(VARIANT_AVX2, avx2)
+VARIANTS(VARIANT_AVX512, avx512)
 #define CALL(isa, name, ...)                                                                       \
     ((isa) == DIG_ISA_AVX512 ? name##_avx512(__VA_ARGS__)                                          \
      : (isa) == DIG_ISA_AVX2 ? name##_avx2(__VA_ARGS__)                                            \
                              : name##_base(__VA_ARGS__))
+#else
+#define CALL(isa, name, ...) ((void)(isa), name##_base(__VA_ARGS__))
+#endif
 
 // Works on a copy of the histories: the law clears the lanes that pad a block, and in the list
 // these are other contacts.
