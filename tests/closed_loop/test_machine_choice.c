@@ -17,13 +17,14 @@ static void *load(void)
 
 static struct dig_trace traced(const struct fault *const fault, const uint64_t seed)
 {
-    struct dig_curve_set *const     made     = set;
-    const struct dig_trace_settings settings = dig_trace_settings_default();
-    struct dig_error                error    = { "" };
-    struct dig_trace                result;
-    struct campaign                *c;
-    set = load();
-    c   = trace(fault, seed);
+    struct dig_curve_set *const made     = set;
+    struct dig_trace_settings   settings = dig_trace_settings_default();
+    struct dig_error            error    = { "" };
+    struct dig_trace            result;
+    struct campaign            *c;
+    set                 = load();
+    settings.bootstraps = test_is_quick() ? 40 : settings.bootstraps;
+    c                   = trace(fault, seed);
     assert_ok(
         dig_trace_run(set, table, NULL, &settings, c->side, DIGS, c->measured, &result, &error),
         error);

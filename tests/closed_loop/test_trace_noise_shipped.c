@@ -1,5 +1,6 @@
 // Sensors that are off for tenths of a second, by digs of another DEM code (LIGGGHTS) and the table
-// that ships: noise is no effect, and an effect beside it is named all the same.
+// that ships: noise is no effect, and an effect beside it is named all the same. DIG_TEST_QUICK=1:
+// one trace with noise.
 
 #include "closed_loop/recordings/observe.h"
 #include "closed_loop/verdict/trace.h"
@@ -83,7 +84,7 @@ TEST(noise_that_lasts_is_no_effect)
                   { "reference/mu0.9_mur0.9_rho2500", 0.03 },
                   { "liggghts_more/mu0.35_mur0.6_rho3500_seed1", 0.3 },
                   { "liggghts_more/mu0.4_mur0.4_rho2000_seed1", 0.1 } };
-    for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
+    for (size_t i = 0; i < (test_is_quick() ? 1 : sizeof plain / sizeof plain[0]); i++) {
         struct dig_trace trace;
         trace_digs(plain[i].bed, plain[i].memory_s, &trace);
         assert_int_equal(trace.effects, 0);
@@ -100,7 +101,7 @@ TEST(an_effect_beside_noise_that_lasts_is_named)
         enum dig_effect_id effect;
     } with[] = { { "liggghts_more/slope_up_seed1", DIG_EFFECT_GROUND_SLOPE },
                  { "liggghts_more/cohesion_2e5_seed1", DIG_EFFECT_COHESION } };
-    for (size_t i = 0; i < sizeof with / sizeof with[0]; i++) {
+    for (size_t i = 0; i < sizeof with / sizeof with[0] && !test_is_quick(); i++) {
         struct dig_trace trace;
         trace_digs(with[i].bed, 0.1, &trace);
         assert_int_equal(trace.effects, 1);
@@ -114,7 +115,7 @@ TEST(digs_without_noise_have_none)
 {
     static const char *const bed[] = { "reference/mu0.5_mur0.5_rho2500",
                                        "liggghts_more/slope_up_seed1" };
-    for (size_t i = 0; i < sizeof bed / sizeof bed[0]; i++) {
+    for (size_t i = 0; i < sizeof bed / sizeof bed[0] && !test_is_quick(); i++) {
         struct dig_trace trace;
         trace_digs(bed[i], 0.0, &trace);
         assert_close(measured[0].lasting.memory_s, 0.0, 0.0);

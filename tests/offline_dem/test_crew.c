@@ -68,16 +68,17 @@ static struct dig_world make_bar(void)
 
 TEST(a_large_bed_moves_alike_on_any_number_of_threads)
 {
+    const size_t     steps = test_is_quick() ? 60 : 120;
     struct dig_world alone = make_bar();
     alone.single           = true;
-    dem_run(&alone, 120);
+    dem_run(&alone, steps);
     assert_true(alone.grains.slabs.count >= 2 && alone.list_rebuilds > 1);
     assert_int_equal(dig_world_sync_motion(&alone), DIG_OK);
     for (size_t threads = test_is_quick() ? 5 : 2; threads <= 5; threads++) {
         struct dig_world shared = make_bar();
         shared.single           = true;
         assert_int_equal(dig_crew_create(threads, &shared.crew), DIG_OK);
-        dem_run(&shared, 120);
+        dem_run(&shared, steps);
         assert_int_equal(dig_world_sync_motion(&shared), DIG_OK);
         assert_memory_equal(alone.grains.id, shared.grains.id, MANY * sizeof *alone.grains.id);
         assert_memory_equal(alone.grains.motion, shared.grains.motion,
