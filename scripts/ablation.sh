@@ -38,7 +38,7 @@ nothing is off in all trajectories alike (.15, .1: 0)|closed_loop/fit/shifts.c|s
 layers have no contrast|estimator/effects/layering.c|s/1.0, 0.25, 2.0/1.0, 1.0, 1.0/|60
 templates have the right form (.1: 0)|closed_loop/fit/likelihood.c|s/of_templates = 0.1;/of_templates = 0.0;/|20
 a higher floor of scatter (.002: .015)|closed_loop/model/scatter.h|s/SCATTER_FLOOR 0.002/SCATTER_FLOOR 0.015/|0
-no cubic terms|closed_loop/model/response_surface.c|s/? 3 : 2;/? 2 : 2;/|20
+no cubic terms|closed_loop/model/response_surface.c|s/MOST_DEGREE = 3/MOST_DEGREE = 2/|20
 a strange machine leaves the soil its name|closed_loop/verdict/trace_verdict.c|s/if (air->unexplained/if (false \&\& air->unexplained/|12
 '
 

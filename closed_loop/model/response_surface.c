@@ -11,22 +11,17 @@
 // Of the diagonal: keeps a table with holes from being singular, and moves nothing else.
 static const double ridge = 1e-9;
 
-// The prior of a cubic term's coefficient: one over its variance, in variances of one dig. Loose
-// beside what a table of 48 gravels with five packings each tells of it.
+// The prior of a cubic term's coefficient: one over its variance, in variances of one dig. The
+// gravels of both tables that ship are likeliest by 5 to 10; with few of them it is the prior that
+// decides, so that no table needs fewer terms.
 static const double cubic_prior = 5.0;
 
-// Entries of the trajectory that has fewest, of those that have any.
-static size_t least_filled(const struct dig_curve_set *const set)
+enum { FREE_DEGREE = 2, MOST_DEGREE = 3 };
+
+static unsigned degree_of(const struct dig_response_surface *const surface, const size_t term)
 {
-    size_t least = set->entries;
-    for (size_t t = 0; t < set->trajectories; t++) {
-        size_t filled = 0;
-        for (size_t e = 0; e < set->entries; e++) {
-            filled += set->packings[e * set->trajectories + t] > 0 ? 1 : 0;
-        }
-        least = filled > 0 && filled < least ? filled : least;
-    }
-    return least;
+    const unsigned *const power = surface->power[term];
+    return power[0] + power[1] + power[2];
 }
 
 // A term is one of a degree less, which stands before it, times the last axis that it has.
@@ -45,17 +40,27 @@ static void add_term(const unsigned power[DIG_AXES], struct dig_response_surface
     }
 }
 
+// Entries that hold the digs of one.
+static size_t copies_of(const struct dig_curve_set *const set)
+{
+    return set->copies > 1 ? set->copies : 1;
+}
+
 static void choose_terms(const struct dig_curve_set *const  set,
                          struct dig_response_surface *const surface)
 {
-    const unsigned most = least_filled(set) >= (size_t)2 * DIG_RESPONSE_SURFACE_TERMS ? 3 : 2;
-    surface->terms      = 0;
-    for (unsigned degree = 0; degree <= most; degree++) {
+    const enum dig_axis axis      = DIG_AXIS_DENSITY_kgpm3;
+    const bool          copied    = set->copies > 1;
+    const size_t        densities = copied ? 1 : set->axis_count[axis];
+    surface->log_density =
+        copied ? 0.5 * log(set->axis[axis][set->axis_count[axis] - 1] / set->axis[axis][0]) : 0.0;
+    surface->terms = 0;
+    for (unsigned degree = 0; degree <= MOST_DEGREE; degree++) {
         for (unsigned x = 0; x <= degree; x++) {
             for (unsigned y = 0; x + y <= degree; y++) {
                 const unsigned power[DIG_AXES] = { x, y, degree - x - y };
                 if (power[0] < set->axis_count[0] && power[1] < set->axis_count[1] &&
-                    power[2] < set->axis_count[2]) {
+                    power[2] < densities) {
                     add_term(power, surface);
                 }
             }
@@ -93,47 +98,62 @@ struct dig_gravel dig_response_surface_gravel(const struct dig_response_surface 
     return gravel;
 }
 
-static void terms_of_entry(const struct dig_response_surface *const surface, const size_t entry,
-                           double term[DIG_RESPONSE_SURFACE_TERMS])
+// What a density adds to log amplitude without a term.
+static double log_scale(const struct dig_response_surface *const surface,
+                        const double                             place[DIG_AXES])
 {
-    double place[DIG_AXES];
-    dig_response_surface_place(surface, &surface->set->gravel[entry], place);
-    terms_at(surface, place, term);
+    return surface->log_density * place[DIG_AXIS_DENSITY_kgpm3];
 }
 
-// Packings of an entry that no other entry holds too.
-static double weight_of(const struct dig_curve_set *const set, const size_t entry, const size_t t)
+// An entry along a trajectory.
+struct dug {
+    const struct dig_curve *curve;
+    double                  weight; // packings that no other entry holds too
+    double                  place[DIG_AXES];
+    double                  term[DIG_RESPONSE_SURFACE_TERMS];
+};
+
+// False when the entry was not dug.
+static bool look_up(const struct dig_response_surface *const surface, const size_t t,
+                    const size_t entry, struct dug *const dug)
 {
-    return (double)set->packings[entry * set->trajectories + t] /
-           (set->copies > 1 ? (double)set->copies : 1.0);
+    const struct dig_curve_set *const set  = surface->set;
+    const size_t                      slot = entry * set->trajectories + t;
+    if (set->packings[slot] <= 0) {
+        return false;
+    }
+    dug->curve  = &set->curve[slot];
+    dug->weight = (double)set->packings[slot] / (double)copies_of(set);
+    dig_response_surface_place(surface, &set->gravel[entry], dug->place);
+    terms_at(surface, dug->place, dug->term);
+    return true;
 }
 
 // The inverse of X' W X of one trajectory. False when the table has too few entries for it.
 static bool invert(struct dig_response_surface *const surface, const size_t t)
 {
-    const struct dig_curve_set *const set                                  = surface->set;
-    const size_t                      n                                    = surface->terms;
-    double normal[DIG_RESPONSE_SURFACE_TERMS * DIG_RESPONSE_SURFACE_TERMS] = { 0.0 };
-    size_t entries                                                         = 0;
-    for (size_t e = 0; e < set->entries; e++) {
-        const double weight = weight_of(set, e, t);
-        if (!(weight > 0.0)) {
+    const size_t n                                                               = surface->terms;
+    double       normal[DIG_RESPONSE_SURFACE_TERMS * DIG_RESPONSE_SURFACE_TERMS] = { 0.0 };
+    size_t       entries                                                         = 0;
+    size_t       free_terms                                                      = 0;
+    for (size_t e = 0; e < surface->set->entries; e++) {
+        struct dug dug;
+        if (!look_up(surface, t, e, &dug)) {
             continue;
         }
         entries++;
-        double term[DIG_RESPONSE_SURFACE_TERMS];
-        terms_of_entry(surface, e, term);
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j < n; j++) {
-                normal[i * n + j] += weight * term[i] * term[j];
+                normal[i * n + j] += dug.weight * dug.term[i] * dug.term[j];
             }
         }
     }
     for (size_t i = 0; i < n; i++) {
-        const unsigned degree = surface->power[i][0] + surface->power[i][1] + surface->power[i][2];
-        normal[i * n + i] += ridge * normal[i * n + i] + (degree > 2 ? cubic_prior : 0.0);
+        const bool is_free = degree_of(surface, i) <= FREE_DEGREE;
+        normal[i * n + i] += ridge * normal[i * n + i] + (is_free ? 0.0 : cubic_prior);
+        free_terms += is_free ? 1 : 0;
     }
-    if (entries < n || dig_cholesky(n, normal) != DIG_OK) {
+    if (entries < free_terms * copies_of(surface->set) || dig_cholesky(n, normal) != DIG_OK) {
         return false;
     }
     for (size_t j = 0; j < n; j++) {
@@ -149,51 +169,50 @@ static bool invert(struct dig_response_surface *const surface, const size_t t)
 
 // What each term's coefficient takes from an entry: a column of (X' W X)^-1 X' W.
 static void share_of(const struct dig_response_surface *const surface, const size_t t,
-                     const size_t entry, double share[DIG_RESPONSE_SURFACE_TERMS])
+                     const struct dug *const dug, double share[DIG_RESPONSE_SURFACE_TERMS])
 {
-    const double weight = weight_of(surface->set, entry, t);
-    double       term[DIG_RESPONSE_SURFACE_TERMS];
-    terms_of_entry(surface, entry, term);
     for (size_t j = 0; j < surface->terms; j++) {
         share[j] = 0.0;
         for (size_t i = 0; i < surface->terms; i++) {
-            share[j] += weight * surface->inverse[t][j][i] * term[i];
+            share[j] += dug->weight * surface->inverse[t][j][i] * dug->term[i];
         }
     }
 }
 
 static void amplitude_at(const struct dig_response_surface *const surface, const size_t t,
+                         const double place[DIG_AXES],
                          const double term[DIG_RESPONSE_SURFACE_TERMS],
                          double       amplitude[DIG_FORCE_CHANNELS])
 {
-    double sum[DIG_FORCE_CHANNELS] = { 0.0 };
+    const double scale                   = log_scale(surface, place);
+    double       sum[DIG_FORCE_CHANNELS] = { 0.0 };
     for (size_t j = 0; j < surface->terms; j++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             sum[c] += surface->log_amplitude[t][j][c] * term[j];
         }
     }
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        amplitude[c] = exp(sum[c]);
+        amplitude[c] = exp(sum[c] + scale);
     }
 }
 
 static void fit_amplitudes(struct dig_response_surface *const surface, const size_t t)
 {
-    const struct dig_curve_set *const set = surface->set;
-    for (size_t e = 0; e < set->entries; e++) {
-        const size_t slot = e * set->trajectories + t;
-        if (set->packings[slot] <= 0) {
+    for (size_t e = 0; e < surface->set->entries; e++) {
+        struct dug dug;
+        if (!look_up(surface, t, e, &dug)) {
             continue;
         }
-        double feature[DIG_FEATURES];
-        double amplitude[DIG_FORCE_CHANNELS];
-        double share[DIG_RESPONSE_SURFACE_TERMS];
-        dig_features_of_table((const float(*)[DIG_CURVE_POINTS])set->curve[slot].mean, feature);
+        const double scale = log_scale(surface, dug.place);
+        double       feature[DIG_FEATURES];
+        double       amplitude[DIG_FORCE_CHANNELS];
+        double       share[DIG_RESPONSE_SURFACE_TERMS];
+        dig_features_of_table((const float(*)[DIG_CURVE_POINTS])dug.curve->mean, feature);
         dig_features_amplitude(feature, NULL, amplitude);
-        share_of(surface, t, e, share);
+        share_of(surface, t, &dug, share);
         for (size_t j = 0; j < surface->terms; j++) {
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-                surface->log_amplitude[t][j][c] += share[j] * log(amplitude[c]);
+                surface->log_amplitude[t][j][c] += share[j] * (log(amplitude[c]) - scale);
             }
         }
     }
@@ -201,23 +220,20 @@ static void fit_amplitudes(struct dig_response_surface *const surface, const siz
 
 static void fit_shapes(struct dig_response_surface *const surface, const size_t t)
 {
-    const struct dig_curve_set *const set = surface->set;
-    for (size_t e = 0; e < set->entries; e++) {
-        const size_t slot = e * set->trajectories + t;
-        if (set->packings[slot] <= 0) {
+    for (size_t e = 0; e < surface->set->entries; e++) {
+        struct dug dug;
+        if (!look_up(surface, t, e, &dug)) {
             continue;
         }
-        double term[DIG_RESPONSE_SURFACE_TERMS];
         double amplitude[DIG_FORCE_CHANNELS];
         double share[DIG_RESPONSE_SURFACE_TERMS];
-        terms_of_entry(surface, e, term);
-        amplitude_at(surface, t, term, amplitude);
-        share_of(surface, t, e, share);
+        amplitude_at(surface, t, dug.place, dug.term, amplitude);
+        share_of(surface, t, &dug, share);
         for (size_t j = 0; j < surface->terms; j++) {
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
                     surface->curve[t][j][c][k] +=
-                        share[j] * (double)set->curve[slot].mean[c][k] / amplitude[c];
+                        share[j] * (double)dug.curve->mean[c][k] / amplitude[c];
                 }
             }
         }
@@ -257,7 +273,7 @@ DIG_VECTORS void dig_response_surface_features(const struct dig_response_surface
 {
     double term[DIG_RESPONSE_SURFACE_TERMS];
     terms_at(surface, place, term);
-    amplitude_at(surface, trajectory, term, amplitude);
+    amplitude_at(surface, trajectory, place, term, amplitude);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         double shape[DIG_FEATURE_BINS];
         dig_rows_add(surface->terms, term, DIG_FEATURES,
@@ -275,7 +291,7 @@ void dig_response_surface_curve(const struct dig_response_surface *const surface
     double term[DIG_RESPONSE_SURFACE_TERMS];
     double amplitude[DIG_FORCE_CHANNELS];
     terms_at(surface, place, term);
-    amplitude_at(surface, trajectory, term, amplitude);
+    amplitude_at(surface, trajectory, place, term, amplitude);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             double sum = 0.0;

@@ -2,11 +2,11 @@
 //
 //   curve(g) = amplitude(g) shape(g),   log amplitude and shape polynomials in (x, y, z)
 //
-// x, y, z: friction, rolling friction and log density, -1 … 1 over the table's axes; up to the
-// third degree where the table has entries for it, else the second; fitted by least squares
-// weighted by packings, the cubic terms drawn towards none. All entries vouch for every gravel, so
-// that the curve's own error is a fraction of an entry's: noise() says which, as a multiple of the
-// variance of one dig. Amplitude: closed_loop/recordings/features.h.
+// x, y, z: friction, rolling friction and log density, -1 … 1 over the table's axes; of the third
+// degree, fitted by least squares weighted by packings, the cubic terms drawn towards none. All
+// entries vouch for every gravel, so that the curve's own error is a fraction of an entry's:
+// noise() says which, as a multiple of the variance of one dig. Amplitude:
+// closed_loop/recordings/features.h.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_RESPONSE_SURFACE_H
 #define DIG_CLOSED_LOOP_MODEL_RESPONSE_SURFACE_H
@@ -24,6 +24,9 @@ struct dig_response_surface {
     size_t                      of[DIG_RESPONSE_SURFACE_TERMS];   // each is this term times
     size_t                      last[DIG_RESPONSE_SURFACE_TERMS]; // the place on this axis
     bool                        known[DIG_TRAJECTORY_MAX];
+    // Half of the density axis in log density, where the table's densities are copies of one: log
+    // amplitude grows by it times z and no term has z. Else 0.
+    double log_density;
     double log_amplitude[DIG_TRAJECTORY_MAX][DIG_RESPONSE_SURFACE_TERMS][DIG_FORCE_CHANNELS];
     double curve[DIG_TRAJECTORY_MAX][DIG_RESPONSE_SURFACE_TERMS][DIG_FORCE_CHANNELS]
                 [DIG_CURVE_POINTS];

@@ -3,6 +3,8 @@
 #include "tests/made_table.h"
 #include "tests/testlib.h"
 
+#include <string.h>
+
 static struct dig_curve_set       *set;
 static struct dig_response_surface surface;
 
@@ -55,17 +57,59 @@ TEST(a_place_is_a_gravel_and_back)
     }
 }
 
-// The same digs in three entries are no more digs than in one.
+// The made table is proportional to density: of three densities as copies the surface is as sure as
+// of one, at each.
 TEST(copies_vouch_for_nothing_twice)
 {
+    const struct dig_gravel one = { { 0.69, 0.37, 2500 } };
+    double                  place[DIG_AXES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
+    make((struct made_options){ .packings = 6, .one_density = true });
+    dig_response_surface_place(&surface, &one, place);
+    dig_response_surface_features(&surface, MADE_ACTUAL, place, feature, size);
+    const double noise = dig_response_surface_noise(&surface, MADE_ACTUAL, place);
     make((struct made_options){ .packings = 6 });
-    const double place[DIG_AXES] = { 0.3, -0.4, 0.1 };
-    const double thrice          = dig_response_surface_noise(&surface, MADE_ACTUAL, place);
-    set->copies                  = 3;
+    set->copies = 3;
     assert_int_equal(dig_response_surface_fit(set, &surface), DIG_OK);
-    const double once = dig_response_surface_noise(&surface, MADE_ACTUAL, place);
-    assert_true(once > 2.0 * thrice); // three times, but for the prior of the cubic terms
-    assert_true(once < 3.01 * thrice);
+    for (double density = 1200; density < 5000; density += 700) {
+        struct dig_gravel other             = one;
+        other.value[DIG_AXIS_DENSITY_kgpm3] = density;
+        const double times                  = density / 2500;
+        double       scaled[DIG_FEATURES];
+        dig_response_surface_place(&surface, &other, place);
+        dig_response_surface_features(&surface, MADE_ACTUAL, place, scaled, size);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            assert_close(scaled[f], times * feature[f], 1e-6 * size[f / DIG_FEATURE_BINS]);
+        }
+        assert_close(dig_response_surface_noise(&surface, MADE_ACTUAL, place), noise, 1e-6 * noise);
+    }
+}
+
+// Digs whose size goes to and fro over four frictions, as no parabola does, in so many beds that
+// what a table is before it is dug does not count.
+TEST(a_table_of_few_gravels_bends_as_it_was_dug)
+{
+    static const double log_times[] = { -0.2, 0.17, -0.17, 0.2 };
+    make((struct made_options){ .packings = 10000, .one_density = true });
+    for (size_t e = 0; e < set->entries; e++) {
+        struct dig_curve *const curve = &set->curve[e * set->trajectories];
+        const float             times = (float)exp(log_times[e / set->axis_count[1]]);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                curve->mean[c][k] *= times;
+            }
+        }
+    }
+    assert_int_equal(dig_response_surface_fit(set, &surface), DIG_OK);
+    for (size_t e = 0; e < set->entries; e++) {
+        double place[DIG_AXES], feature[DIG_FEATURES];
+        double size[DIG_FORCE_CHANNELS], dug[DIG_FORCE_CHANNELS];
+        dig_response_surface_place(&surface, &set->gravel[e], place);
+        dig_response_surface_features(&surface, 0, place, feature, size);
+        dig_features_of_table(
+            (const float(*)[DIG_CURVE_POINTS])set->curve[e * set->trajectories].mean, feature);
+        dig_features_amplitude(feature, NULL, dug);
+        assert_close(size[0], dug[0], 0.02 * dug[0]);
+    }
 }
 
 // Features are linear in the curve, so those of the surface are those of its curve.
@@ -126,6 +170,14 @@ TEST(too_few_entries_are_refused)
         for (size_t t = 0; t < set->trajectories; t++) {
             set->packings[e * set->trajectories + t] = 0;
         }
+    }
+    assert_int_equal(dig_response_surface_fit(set, &surface), DIG_EINVAL);
+    made_table_destroy(set);
+    set = made_table(&(struct made_options){ .packings = 4 });
+    memset(set->packings, 0, set->entries * set->trajectories * sizeof *set->packings);
+    set->copies = 3;
+    for (size_t e = 0; e < 5 * set->copies; e++) {
+        set->packings[e * set->trajectories] = 4;
     }
     assert_int_equal(dig_response_surface_fit(set, &surface), DIG_EINVAL);
 }
