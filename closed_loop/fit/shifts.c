@@ -64,13 +64,16 @@ static struct dig_plain beside(const struct dig_soil *const soil, const size_t t
     return dig_plain_of(soil, trajectory, moved);
 }
 
-// What the beds of a group differ by as other gravels do; the first shifts are those gravels.
+// What the beds of a group differ by as other gravels do, and the surface, a mean of beds, with
+// them; the first shifts are those gravels.
 static void put_as_gravels(const struct dig_whitened_digs *const batch, const size_t group,
-                           struct dig_shifts *const shifts)
+                           const double place[], struct dig_shifts *const shifts)
 {
     const struct dig_whitened_digs_group *const of = &batch->group[group];
 
-    const double mean = sqrt(1.0 / (double)of->digs + of->repeats);
+    const double mean =
+        sqrt(1.0 / (double)of->digs + of->repeats +
+             dig_response_surface_noise(batch->soil->surface, of->trajectory, place));
     for (size_t a = 0; a < DIG_AXES; a++) {
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             shifts->as_gravels[a][f] = shifts->of[a][f] / of->amplitude[f / DIG_FEATURE_BINS];
@@ -101,7 +104,7 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
                                              place_of(batch->soil->surface->set, a), moved);
         put(near.feature, plain->feature, shifts);
     }
-    put_as_gravels(batch, group, shifts);
+    put_as_gravels(batch, group, number, shifts);
     for (size_t a = 0; templated && a < DIG_AXES; a++) {
         const struct dig_plain far =
             beside(batch->soil, trajectory, numbers, number, a, of_effect_place, moved);

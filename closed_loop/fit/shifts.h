@@ -13,7 +13,7 @@
 struct dig_shifts {
     size_t shifts;
     double of[DIG_SHIFTS_MAX][DIG_FEATURES]; // units of the table
-    // What the mean of so many beds differs by as other gravels do, beyond S.
+    // What the mean of so many beds and the surface differ by as other gravels do, beyond S.
     double as_gravels[DIG_AXES][DIG_FEATURES];
 };
 

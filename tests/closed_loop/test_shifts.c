@@ -100,16 +100,20 @@ static double squares_of_beds(const struct dig_scatter *const scatter, const siz
     return sum;
 }
 
-// As much in each of three directions as the scatter says, less the more beds there are.
+// As much in each of three directions as the scatter says, less the more beds there are; and the
+// surface is a mean of beds.
 TEST(beds_differ_as_gravels_do)
 {
     static struct dig_scatter scatter;
-    make_batch((double[DIG_AXES]){ 0.0 });
+    double                    place[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    make_batch(place);
     const size_t t        = batch.group[0].trajectory;
     scatter               = *world.scatter;
     scatter.as_gravels[t] = 0.8;
-    assert_close(squares_of_beds(&scatter, 1), DIG_AXES * 0.8, 1e-6);
-    assert_close(squares_of_beds(&scatter, 4), DIG_AXES * 0.8 / 4.0, 1e-6);
+    const double surface  = dig_response_surface_noise(world.surface, t, place);
+    assert_true(surface > 0.01);
+    assert_close(squares_of_beds(&scatter, 1), DIG_AXES * 0.8 * (1.0 + surface), 1e-6);
+    assert_close(squares_of_beds(&scatter, 4), DIG_AXES * 0.8 * (1.0 / 4.0 + surface), 1e-6);
     scatter.as_gravels[t] = 0.0;
     assert_close(squares_of_beds(&scatter, 1), 0.0, 0.0);
 }
