@@ -1,6 +1,7 @@
 #include "closed_loop/model/scatter.h"
 
 #include "closed_loop/model/gravel_directions.h"
+#include "closed_loop/model/packings.h"
 #include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
@@ -8,14 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FOLDS = 10, LEAST_FREEDOM = 12 };
-
-// How far S is drawn towards a covariance whose correlations depend on the distance of two bins
-// alone (and are this much smaller, so that it stays positive definite). Of 0.1 ... 0.9 the
-// held-out likelihood of the packings of a table with 49 degrees of freedom is best at 0.1 ... 0.3,
-// and better by 0.1 to 0.2 a feature than when drawn towards the diagonal by any share.
-static const double towards_even   = 0.25;
-static const double even_reduction = 0.95;
+enum { LEAST_FREEDOM = 12 };
 
 static const double least_factor = 0.4;
 static const double most_factor  = 2.5;
@@ -32,135 +26,27 @@ double dig_scatter_factor(const struct dig_scatter *const scatter, const size_t 
     return fmin(fmax(factor, least_factor), most_factor);
 }
 
-// A residual that tells of scatter: of an entry with two packings or more.
-struct told {
-    const struct dig_scatter_residual *of;
-    double                             freedom; // its share of a degree: 1 - 1 / packings
-    size_t                             fold;
-};
-
-// Those along one trajectory; how many.
-static size_t take(const size_t t, const size_t n, const struct dig_scatter_residual r[],
-                   struct told told[])
-{
-    size_t count = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (r[i].trajectory == t && r[i].packings > 1) {
-            // Of an entry with few packings all residuals are held out together: about their mean
-            // they know of each other. Those of an entry with many are held out in turn: it may be
-            // most of the table.
-            const size_t in_turn = r[i].packings >= FOLDS / 2 ? i : r[i].entry;
-            told[count++] =
-                (struct told){ &r[i], 1.0 - 1.0 / (double)r[i].packings, in_turn % FOLDS };
-        }
-    }
-    return count;
-}
-
-// Mean correlation of all pairs of bins of two channels that are lag apart.
-static double mean_correlation(const double s[DIG_FEATURES][DIG_FEATURES], const size_t one,
-                               const size_t other, const int lag)
-{
-    double sum = 0.0;
-    double n   = 0.0;
-    for (int b = 0; b < DIG_FEATURE_BINS; b++) {
-        const int to = b + lag;
-        if (to < 0 || to >= DIG_FEATURE_BINS) {
-            continue;
-        }
-        const size_t i       = one * DIG_FEATURE_BINS + (size_t)b;
-        const size_t j       = other * DIG_FEATURE_BINS + (size_t)to;
-        const double product = s[i][i] * s[j][j];
-        sum += product > 0.0 ? s[i][j] / sqrt(product) : 0.0;
-        n += 1.0;
-    }
-    return sum / n;
-}
-
-// Draws S towards even correlations; variances stay.
-static void draw_towards_even(double s[DIG_FEATURES][DIG_FEATURES])
-{
-    double drawn[DIG_FEATURES][DIG_FEATURES];
-    for (size_t i = 0; i < DIG_FEATURES; i++) {
-        for (size_t j = 0; j < DIG_FEATURES; j++) {
-            const int    lag  = (int)(j % DIG_FEATURE_BINS) - (int)(i % DIG_FEATURE_BINS);
-            const double even = even_reduction * sqrt(s[i][i] * s[j][j]) *
-                                mean_correlation((const double(*)[DIG_FEATURES])s,
-                                                 i / DIG_FEATURE_BINS, j / DIG_FEATURE_BINS, lag);
-            drawn[i][j] = i == j ? s[i][i] : (1.0 - towards_even) * s[i][j] + towards_even * even;
-        }
-    }
-    memcpy(s, drawn, sizeof drawn);
-}
-
-// S of a trajectory's residuals, each over its factor, without those of one fold (fold FOLDS: of
-// all); how many degrees of freedom it is pooled from.
-static double pool(const struct dig_scatter *const scatter, const size_t t, const size_t n,
-                   const struct told told[], const size_t without,
-                   double s[DIG_FEATURES][DIG_FEATURES])
-{
-    memset(s, 0, DIG_FEATURES * sizeof s[0]);
-    double freedom = 0.0;
-    for (size_t m = 0; m < n; m++) {
-        if (told[m].fold == without) {
-            continue;
-        }
-        const struct dig_scatter_residual *const r = told[m].of;
-
-        const double weight = 1.0 / dig_scatter_factor(scatter, t, r->strength);
-        for (size_t i = 0; i < DIG_FEATURES; i++) {
-            for (size_t j = 0; j < DIG_FEATURES; j++) {
-                s[i][j] += weight * r->value[i] * r->value[j];
-            }
-        }
-        freedom += told[m].freedom;
-    }
-    for (size_t i = 0; i < DIG_FEATURES; i++) {
-        for (size_t j = 0; j < DIG_FEATURES; j++) {
-            s[i][j] /= fmax(freedom, 1.0);
-        }
-    }
-    draw_towards_even(s);
-    return freedom;
-}
-
-static void add_floor(double s[DIG_FEATURES][DIG_FEATURES])
-{
-    for (size_t i = 0; i < DIG_FEATURES; i++) {
-        s[i][i] += DIG_SCATTER_FLOOR * DIG_SCATTER_FLOOR;
-    }
-}
-
 // The L of S with its floor, in place.
 static enum dig_status decompose(double s[DIG_FEATURES][DIG_FEATURES])
 {
-    add_floor(s);
+    dig_packings_add_floor(s);
     return dig_cholesky(DIG_FEATURES, &s[0][0]);
-}
-
-// Variance of a residual over that of one dig, averaged over the directions S = L L' knows.
-static double size_of(const double lower[DIG_FEATURES][DIG_FEATURES], const struct told *const told)
-{
-    double whitened[DIG_FEATURES];
-    memcpy(whitened, told->of->value, sizeof whitened);
-    dig_lower_solve(DIG_FEATURES, &lower[0][0], whitened);
-    return dig_product(DIG_FEATURES, whitened, whitened) / DIG_FEATURES / told->freedom;
 }
 
 // Fits the factor: sizes of residuals over strength, weighted by their freedom.
 static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_t t, const size_t n,
-                                  const struct told told[])
+                                  struct dig_packing packing[])
 {
     double s[DIG_FEATURES][DIG_FEATURES];
-    (void)pool(scatter, t, n, told, FOLDS, s);
+    (void)dig_packings_pool(n, packing, DIG_PACKINGS_FOLDS, s);
     if (decompose(s) != DIG_OK) {
         return DIG_EINVAL;
     }
     double sum[5] = { 0.0 }; // weight, x, y, xx, xy
     for (size_t i = 0; i < n; i++) {
-        const double w = told[i].freedom;
-        const double y = size_of((const double(*)[DIG_FEATURES])s, &told[i]);
-        const double x = told[i].of->strength;
+        const double w = packing[i].freedom;
+        const double y = dig_packing_size((const double(*)[DIG_FEATURES])s, &packing[i]);
+        const double x = packing[i].of->strength;
         sum[0] += w;
         sum[1] += w * x;
         sum[2] += w * y;
@@ -173,6 +59,9 @@ static enum dig_status fit_factor(struct dig_scatter *const scatter, const size_
     const double xy      = sum[4] / sum[0] - mean_x * mean_y;
     scatter->strength[t] = mean_x;
     scatter->slope[t]    = xx > 1e-6 ? xy / xx / mean_y : 0.0;
+    for (size_t i = 0; i < n; i++) {
+        packing[i].factor = dig_scatter_factor(scatter, t, packing[i].of->strength);
+    }
     return DIG_OK;
 }
 
@@ -182,29 +71,28 @@ struct variance {
 };
 
 // Variance of the digs of folds [from, to), each over an S that its fold took no part in; of fold
-// FOLDS: of all digs over the S of all.
+// DIG_PACKINGS_FOLDS: of all digs over the S of all.
 static struct variance variance_over(const struct dig_response_surface *const surface,
-                                     const struct dig_scatter *const scatter, const size_t t,
-                                     const size_t n, const struct told told[], const size_t from,
+                                     const size_t t, const size_t n,
+                                     const struct dig_packing packing[], const size_t from,
                                      const size_t to)
 {
     struct variance sum     = { 0.0, 0.0 };
     double          freedom = 0.0;
     for (size_t fold = from; fold < to; fold++) {
         double s[DIG_FEATURES][DIG_FEATURES];
-        if (pool(scatter, t, n, told, fold, s) < 1.0 || decompose(s) != DIG_OK) {
+        if (dig_packings_pool(n, packing, fold, s) < 1.0 || decompose(s) != DIG_OK) {
             continue;
         }
         for (size_t i = 0; i < n; i++) {
-            if (told[i].fold == fold || fold == FOLDS) {
+            if (packing[i].fold == fold || fold == DIG_PACKINGS_FOLDS) {
                 const double(*const lower)[DIG_FEATURES] = (const double(*)[DIG_FEATURES])s;
-                const double weight =
-                    told[i].freedom / dig_scatter_factor(scatter, t, told[i].of->strength);
-                sum.all += weight * size_of(lower, &told[i]);
-                sum.as_gravels += weight / told[i].freedom *
-                                  dig_gravel_directions_variance(surface, t, told[i].of->place,
-                                                                 lower, told[i].of->value);
-                freedom += told[i].freedom;
+                const double weight                      = packing[i].freedom / packing[i].factor;
+                sum.all += weight * dig_packing_size(lower, &packing[i]);
+                sum.as_gravels += weight / packing[i].freedom *
+                                  dig_gravel_directions_variance(surface, t, packing[i].of->place,
+                                                                 lower, packing[i].of->value);
+                freedom += packing[i].freedom;
             }
         }
     }
@@ -214,7 +102,8 @@ static struct variance variance_over(const struct dig_response_surface *const su
 
 // A residual is smaller against an S it took part in than a campaign's dig is: larger makes it one.
 static enum dig_status keep_residuals(struct dig_scatter *const scatter, const size_t t,
-                                      const size_t n, const struct told told[], const double larger)
+                                      const size_t n, const struct dig_packing packing[],
+                                      const double larger)
 {
     scatter->residual[t] = malloc((n + 1) * sizeof *scatter->residual[t]);
     if (scatter->residual[t] == NULL) {
@@ -222,10 +111,9 @@ static enum dig_status keep_residuals(struct dig_scatter *const scatter, const s
     }
     scatter->residuals[t] = n;
     for (size_t i = 0; i < n; i++) {
-        const struct dig_scatter_residual *const r = told[i].of;
+        const struct dig_scatter_residual *const r = packing[i].of;
 
-        const double scale =
-            sqrt(larger / (told[i].freedom * dig_scatter_factor(scatter, t, r->strength)));
+        const double scale = sqrt(larger / (packing[i].freedom * packing[i].factor));
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             scatter->residual[t][i][f] = scale * r->value[f];
         }
@@ -235,16 +123,16 @@ static enum dig_status keep_residuals(struct dig_scatter *const scatter, const s
 
 static enum dig_status pool_trajectory(const struct dig_response_surface *const surface,
                                        struct dig_scatter *const scatter, const size_t t,
-                                       const size_t n, const struct told told[])
+                                       const size_t n, struct dig_packing packing[])
 {
-    enum dig_status status = fit_factor(scatter, t, n, told);
+    enum dig_status status = fit_factor(scatter, t, n, packing);
     if (status != DIG_OK) {
         return status;
     }
-    (void)pool(scatter, t, n, told, FOLDS, scatter->covariance[t]);
-    const struct variance held_out = variance_over(surface, scatter, t, n, told, 0, FOLDS);
+    (void)dig_packings_pool(n, packing, DIG_PACKINGS_FOLDS, scatter->covariance[t]);
+    const struct variance held_out = variance_over(surface, t, n, packing, 0, DIG_PACKINGS_FOLDS);
     const struct variance taken_part =
-        variance_over(surface, scatter, t, n, told, FOLDS, FOLDS + 1);
+        variance_over(surface, t, n, packing, DIG_PACKINGS_FOLDS, DIG_PACKINGS_FOLDS + 1);
     scatter->widened[t]    = fmax(held_out.all, 1.0);
     scatter->as_gravels[t] = fmax(held_out.as_gravels / scatter->widened[t] - 1.0, 0.0);
     for (size_t i = 0; i < DIG_FEATURES; i++) {
@@ -252,13 +140,13 @@ static enum dig_status pool_trajectory(const struct dig_response_surface *const 
             scatter->covariance[t][i][j] *= scatter->widened[t];
         }
     }
-    add_floor(scatter->covariance[t]);
+    dig_packings_add_floor(scatter->covariance[t]);
     memcpy(scatter->lower[t], scatter->covariance[t], sizeof scatter->lower[t]);
     status = dig_cholesky(DIG_FEATURES, &scatter->lower[t][0][0]);
     if (status != DIG_OK) {
         return status;
     }
-    return keep_residuals(scatter, t, n, told,
+    return keep_residuals(scatter, t, n, packing,
                           fmax(held_out.all / fmax(taken_part.all, 1e-3), 1.0));
 }
 
@@ -300,12 +188,12 @@ static void correlate(const double variance[DIG_FEATURES], const double correlat
             s[i][j] = same ? sqrt(variance[i] * variance[j]) * pow(correlation, away) : 0.0;
         }
     }
-    add_floor(s);
+    dig_packings_add_floor(s);
 }
 
 // Of a trajectory's residuals, -2 log: as many independent digs as degrees of freedom.
 static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t n,
-                        const struct told told[])
+                        const struct dig_packing packing[])
 {
     double lower[DIG_FEATURES][DIG_FEATURES];
     double sum = 0.0;
@@ -315,8 +203,9 @@ static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t
     }
     const double log_det = dig_lower_log_det(DIG_FEATURES, &lower[0][0]);
     for (size_t i = 0; i < n; i++) {
-        sum += told[i].freedom *
-               (log_det + DIG_FEATURES * size_of((const double(*)[DIG_FEATURES])lower, &told[i]));
+        sum += packing[i].freedom *
+               (log_det +
+                DIG_FEATURES * dig_packing_size((const double(*)[DIG_FEATURES])lower, &packing[i]));
     }
     return sum;
 }
@@ -324,7 +213,7 @@ static double misfit_of(const double s[DIG_FEATURES][DIG_FEATURES], const size_t
 // S from the standard deviations of the table's curves, with the correlation that suits the few
 // packings best.
 static void assume(const struct dig_response_surface *const surface, const size_t t, const size_t n,
-                   const struct told told[], struct dig_scatter *const scatter)
+                   const struct dig_packing packing[], struct dig_scatter *const scatter)
 {
     double variance[DIG_FEATURES];
     double best = INFINITY;
@@ -332,7 +221,7 @@ static void assume(const struct dig_response_surface *const surface, const size_
     for (size_t i = 0; i < sizeof correlations / sizeof correlations[0]; i++) {
         double s[DIG_FEATURES][DIG_FEATURES];
         correlate(variance, correlations[i], s);
-        const double misfit = misfit_of((const double(*)[DIG_FEATURES])s, n, told);
+        const double misfit = misfit_of((const double(*)[DIG_FEATURES])s, n, packing);
         if (i == 0 || misfit < best) {
             best = misfit;
             memcpy(scatter->covariance[t], s, sizeof s);
@@ -349,24 +238,24 @@ enum dig_status dig_scatter_pool(const struct dig_response_surface *const surfac
                                  struct dig_scatter **const               scatter)
 {
     assert(surface != NULL && scatter != NULL);
-    struct dig_scatter *const made   = calloc(1, sizeof *made);
-    struct told *const        told   = malloc((residuals + 1) * sizeof *told);
-    enum dig_status           status = made != NULL && told != NULL ? DIG_OK : DIG_ENOMEM;
+    struct dig_scatter *const made    = calloc(1, sizeof *made);
+    struct dig_packing *const packing = malloc((residuals + 1) * sizeof *packing);
+    enum dig_status           status  = made != NULL && packing != NULL ? DIG_OK : DIG_ENOMEM;
     for (size_t t = 0; status != DIG_ENOMEM && t < surface->set->trajectories; t++) {
         if (!surface->known[t]) {
             continue;
         }
-        const size_t n = take(t, residuals, residual, told);
+        const size_t n = dig_packings_take(t, residuals, residual, packing);
         for (size_t i = 0; i < n; i++) {
-            made->freedom[t] += told[i].freedom;
+            made->freedom[t] += packing[i].freedom;
         }
-        status = made->freedom[t] >= LEAST_FREEDOM ? pool_trajectory(surface, made, t, n, told)
+        status = made->freedom[t] >= LEAST_FREEDOM ? pool_trajectory(surface, made, t, n, packing)
                                                    : DIG_EINVAL;
         if (status == DIG_EINVAL) {
-            assume(surface, t, n, told, made);
+            assume(surface, t, n, packing, made);
         }
     }
-    free(told);
+    free(packing);
     if (status == DIG_ENOMEM) {
         dig_scatter_destroy(made);
         return status;
