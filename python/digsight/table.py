@@ -28,6 +28,9 @@ ENTRIES = """SELECT friction, rolling, density_kgpm3, t.name AS trajectory, pack
     FROM entry e JOIN ground g ON g.id = e.ground JOIN trajectory t ON t.id = e.trajectory
     ORDER BY 1, 2, 3, effect, magnitude, depth, attack_rad, number"""
 
+# Of what is computed with: a column that is not STRICT, and one that was not when it was written, holds anything.
+TYPES = {"points": int, "packings": int, "packing": int, "windows": int, "first_s": float, "step_s": float}
+
 PHASES = """SELECT t.name AS trajectory, number, p.name AS phase, duration_s, vx_mps, vz_mps, omega_radps
     FROM phase p JOIN trajectory t ON t.id = p.trajectory ORDER BY t.id, number"""
 
@@ -135,13 +138,15 @@ def open_table(path: str | Path) -> Table:
         raise ValueError(f"{name}: not a table of digtable (application_id {identity}, expected {APPLICATION_ID})")
     if version not in VERSIONS:
         raise ValueError(f"{name}: table format {version}, expected 3 or 4 (`digtable seal` makes 2 into 4)")
-    foreign = "SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger') OR sql LIKE 'create virtual%'"
+    # Their types are what SQLite made of the schema, not what its text looks like.
+    foreign = "SELECT 1 FROM pragma_table_list WHERE schema = 'main' AND type <> 'table'"
+    trigger = "SELECT 1 FROM sqlite_master WHERE type = 'trigger'"
     computed = "SELECT 1 FROM sqlite_master m JOIN pragma_table_xinfo(m.name) WHERE hidden <> 0"
-    if len(_query(db, name, foreign)) > 0 or len(_query(db, name, computed)) > 0:
+    if any(len(_query(db, name, sql)) > 0 for sql in (foreign, trigger, computed)):
         raise ValueError(f"{name}: a view, trigger, virtual table or column, expected the tables of digtable alone")
 
     scene = _query(db, name, "SELECT * FROM scene").drop(columns="id").to_dict("records")
-    if len(scene) != 1 or not isinstance(scene[0]["points"], int) or scene[0]["points"] < 2:
+    if len(scene) != 1 or scene[0]["points"] < 2:
         raise ValueError(f"{name}: scene: expected one row, of two points or more")
     phases = _query(db, name, PHASES)
     entries = _query(db, name, ENTRIES)
@@ -156,7 +161,11 @@ def _query(db: sqlite3.Connection, path: str, sql: str, *values: int) -> pd.Data
     except sqlite3.Error as error:
         raise ValueError(f"{path}: {error}, expected a table of digtable") from error
     check_texts(path, rows)
-    return pd.DataFrame(rows, columns=[column[0] for column in cursor.description or ()])
+    names = [column[0] for column in cursor.description or ()]
+    for name, values in zip(names, zip(*rows)):
+        if name in TYPES and not all(isinstance(value, TYPES[name]) for value in values):
+            raise ValueError(f"{path}: {name}: expected numbers")
+    return pd.DataFrame(rows, columns=names)
 
 
 def _channels(blob: Any, points: int, what: str) -> np.ndarray:

@@ -35,9 +35,14 @@ def read_trace(path: str | Path) -> Trace:
         if not isinstance(whole, dict):
             raise ValueError(f"{path}: a {type(whole).__name__}, expected an object")
         check_texts(path, whole)
-        material = pd.DataFrame(whole["material"]).T
-        material["before"] = pd.Series(whole["material_before"])
         lists = ("effects", "candidates", "residuals", "residual_against")
+        for name, kind in {"verdict": str, **dict.fromkeys(lists, dict)}.items():
+            if not isinstance(whole[name], list) or not all(isinstance(one, kind) for one in whole[name]):
+                raise ValueError(f"{path}: {name}: expected what digloop trace --json writes")
+        if "digs" not in whole:  # __repr__ tells it
+            raise KeyError("digs")
+        material = pd.DataFrame(whole["material"]).T
+        material["before"] = pd.Series(whole["material_before"], dtype=float)
         frames = {name: pd.json_normalize(whole[name]) for name in lists}
         return Trace(verdict=whole["verdict"], material=material, whole=whole, **frames)
     except json.JSONDecodeError as error:
