@@ -208,11 +208,11 @@ enum dig_status digloop_predict(const struct digloop_job *const job, struct dig_
     }
     struct prediction p = { .errors = { .digs = 0 } };
     status              = predict(job, t, &id.match, &p, error);
-    if (status == DIG_OK && options->out != NULL) {
-        status = write_curve(options->out, job->set, &p.trajectory, &p.curve, error);
-    }
     if (status == DIG_OK && options->measured != NULL) {
         status = digloop_prediction_error_measure(job, t, &id.match, &p.errors, error);
+    }
+    if (status == DIG_OK && options->out != NULL) {
+        status = write_curve(options->out, job->set, &p.trajectory, &p.curve, error);
     }
     if (status == DIG_OK) {
         print(options, &p, job->machine);
