@@ -2,6 +2,7 @@
 
 #include "core/did_you_mean.h"
 #include "core/help.h"
+#include "core/regular.h"
 #include "core/streams.h"
 #include "core/text.h"
 
@@ -141,6 +142,47 @@ static void list_options(const struct dig_program *const program,
     }
 }
 
+// The files that options name.
+struct named {
+    size_t      files;
+    const char *path[OPTIONS_MAX];
+    bool        written[OPTIONS_MAX];
+};
+
+static void note(const struct dig_option *const o, const char *const value,
+                 struct named *const named)
+{
+    // "CURVE.csv", not "NAME". "-" is standard output, of which dig_out_is_stdout() tells.
+    if (o->value != NULL && strchr(o->value, '.') != NULL && strcmp(value, "-") != 0 &&
+        named->files < OPTIONS_MAX) {
+        named->path[named->files]      = value;
+        named->written[named->files++] = o->writes;
+    }
+}
+
+// No input is written over, and no result by the next.
+static enum dig_status check_written(const struct named *const named, char *const argv[const],
+                                     struct dig_error *const error)
+{
+    for (size_t i = 0; i < named->files; i++) {
+        const char *const to    = named->path[i];
+        bool              again = false;
+        for (size_t k = 0; named->written[i] && k < named->files; k++) {
+            again = again || (k != i && dig_regular_same(to, named->path[k]));
+        }
+        for (size_t k = 0; named->written[i] && argv[k] != NULL; k++) {
+            again = again || dig_regular_same(to, argv[k]);
+        }
+        if (again) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: to be written, and named for something else, too; expected "
+                                 "another name",
+                                 to);
+        }
+    }
+    return DIG_OK;
+}
+
 const struct dig_command *dig_options_read(const struct dig_program *const program, const int argc,
                                            char *argv[], void *const into,
                                            struct dig_error *const error)
@@ -151,6 +193,7 @@ const struct dig_command *dig_options_read(const struct dig_program *const progr
         return NULL;
     }
     struct known known;
+    struct named named = { .files = 0 };
     list_options(program, command, &known);
     // getopt sees the command in the program's place, and begins anew with 0.
     const int skipped = command == &program->self ? 0 : 1;
@@ -175,8 +218,12 @@ const struct dig_command *dig_options_read(const struct dig_program *const progr
         if (take(told, optarg, into, error) != DIG_OK) {
             return NULL;
         }
+        note(told, optarg, &named);
     }
     optind += skipped;
+    if (check_written(&named, argv + optind, error) != DIG_OK) {
+        return NULL;
+    }
     // Options alone are no command.
     return skipped == 0 ? find_command(program, NULL, error) : command;
 }

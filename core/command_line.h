@@ -33,6 +33,7 @@ struct dig_option {
     enum dig_status (*take)(const char *value, void *into, struct dig_error *error);
     enum dig_option_kind kind;
     bool                 clears; // the field of a flag
+    bool                 writes; // the file named: no other word of the line may name it
     char                 letter; // the short one; 0: none
 };
 

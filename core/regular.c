@@ -32,3 +32,15 @@ enum dig_status dig_regular_open(const char *const path, FILE **const file,
     *file = opened;
     return DIG_OK;
 }
+
+bool dig_regular_same(const char *const to, const char *const path)
+{
+    assert(to != NULL && path != NULL);
+    struct stat written;
+    struct stat read;
+    if (lstat(to, &written) != 0) {
+        return strcmp(to, path) == 0;
+    }
+    return S_ISREG(written.st_mode) && stat(path, &read) == 0 && read.st_dev == written.st_dev &&
+           read.st_ino == written.st_ino;
+}

@@ -74,12 +74,12 @@ static const struct dig_option known[] = {
     { "recording", "RECORDING.csv", " digreport ",
       "a force recording that was fed to the rig, drawn beside; up to 8", .take = take_recording },
     { "title", "TEXT", NULL, "of the page", INTO(title) },
-    { "html", "PAGE.html", NULL, "write a page with plots", INTO(html) },
-    { "csv", "DIGS.csv", " shift ", "write a line a dig", INTO(csv) },
+    { "html", "PAGE.html", NULL, "write a page with plots", INTO(html), .writes = true },
+    { "csv", "DIGS.csv", " shift ", "write a line a dig", INTO(csv), .writes = true },
     { "json", "FILE.json", NULL,
       "write the results as JSON, - for standard output; what people read goes to standard error "
       "then",
-      INTO(json) },
+      INTO(json), .writes = true },
     { "quiet", NULL, NULL, "nothing for people, only what goes wrong", INTO(quiet), .letter = 'q' },
 };
 

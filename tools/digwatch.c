@@ -44,7 +44,7 @@ static const struct dig_option known[] = {
     { "prometheus", "FILE.prom", NULL,
       "write health once a second in Prometheus' text format, for node_exporter's textfile "
       "collector, instead of showing it; SIGTERM ends it",
-      INTO(prometheus) },
+      INTO(prometheus), .writes = true },
 };
 
 static const struct dig_program program = {

@@ -47,6 +47,7 @@ TEST(options_are_those_of_the_command)
                         "roast: 1 200 0011 -<<file sack");
     assert_string_equal(read_line("coffee roast --be=7"), "roast: 7 200 0001 -<<");
     assert_string_equal(read_line("coffee roast -- --json"), "roast: 1 200 0001 -<< --json");
+    assert_string_equal(read_line("coffee brew - -o -"), "brew: 1 200 0001 -<-< -");
 }
 
 TEST(values_go_where_their_rows_say)
@@ -84,6 +85,10 @@ TEST(what_is_wrong_is_said_with_what_was_meant)
         { "coffee roast --heat 149.9", "--heat 149.9: expected 150 to 250 C" },
         { "coffee roast --heat nan", "--heat nan: expected 150 to 250 C" },
         { "coffee roast --grind 7", "--grind 7: expected a letter" },
+        { "coffee brew cup x -o x",
+          "x: to be written, and named for something else, too; expected another name" },
+        { "coffee brew -o x --output x",
+          "x: to be written, and named for something else, too; expected another name" },
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_string_equal(read_line(wrong[i][0]), wrong[i][1]);

@@ -36,7 +36,7 @@ TEST(help_of_a_command_is_its_own)
                 "Options:\n"
                 "      --beans N             how many\n"
                 "      --milk                with milk\n"
-                "  -o, --output SOME/VERY/LONG/FILE\n"
+                "  -o, --output SOME/VERY/LONG/FILE.txt\n"
                 "                            where to\n"
                 "      --json                to standard output\n"
                 "  -h, --help                this text\n"

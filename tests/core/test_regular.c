@@ -60,3 +60,22 @@ TEST_WITH(what_cannot_be_opened_says_why, scratch_setup, scratch_teardown)
     refuse(scratch_path("socket"), DIG_EIO, "No such device");
     (void)close(fd);
 }
+
+TEST_WITH(a_file_is_written_over_where_its_name_or_a_link_leads_to_it, scratch_setup,
+          scratch_teardown)
+{
+    char to[256];
+    char by[256];
+    char link[256];
+    (void)snprintf(to, sizeof to, "%s", scratch_write("file", "abc"));
+    (void)snprintf(by, sizeof by, "%s", scratch_path("./file"));
+    (void)snprintf(link, sizeof link, "%s", scratch_path("link"));
+    assert_int_equal(symlink(to, link), 0);
+    assert_true(dig_regular_same(to, by));
+    assert_true(dig_regular_same(to, link));
+    assert_false(dig_regular_same(link, to)); // it is the link that is replaced
+    assert_false(dig_regular_same(to, scratch_path("none")));
+    assert_true(dig_regular_same("none", "none"));
+    assert_false(dig_regular_same("none", "other"));
+    assert_false(dig_regular_same("/dev/null", "/dev/null"));
+}

@@ -28,6 +28,10 @@ refused "too many arguments" "one argument too many" list a b
 refused "too few arguments" "expected SCENE.yaml GRID.yaml" generate $scene
 refused "dig without -o" "-o CURVE.csv missing" dig $scene "${dig[@]}"
 refused "dig without a density" "--density missing" dig $scene --trajectory scrape --friction .5 --rolling .5 -o "$out"
+cp tests/data/formats/table.sqlite "$work/mine.sqlite"
+refused "a table that would be written over by its export" "mine.sqlite: to be written, and named for something else" \
+    export "$work/mine.sqlite" -o "$work/./mine.sqlite"
+check "and it is as it was" cmp -s tests/data/formats/table.sqlite "$work/mine.sqlite"
 refused "generate without -o" "-o TABLE.sqlite missing" generate $scene $grid
 refused "a friction that is none" "--friction high: expected 0 to 3" dig $scene --friction high
 refused "a friction that is nan" "--friction nan: expected 0 to 3" dig $scene --friction nan

@@ -78,7 +78,8 @@ static enum dig_status take_fault(const char *const text, void *const into,
 
 static const struct dig_option known[] = {
     { "machine", "M.yaml", NULL, "the machine (config/machines)", INTO(machine) },
-    { "output", "OUT.csv", " record air ", "machine recording to write", INTO(out), .letter = 'o' },
+    { "output", "OUT.csv", " record air ", "machine recording to write", INTO(out), .letter = 'o',
+      .writes = true },
     { "can", "IFACE", " serve ", "CAN frames in the ZX200 layout", INTO(can) },
     { "modbus-tcp", "IPV4:PORT", " serve ",
       "Modbus TCP server (port 0: any free one, told on stderr)", INTO(tcp) },
@@ -102,7 +103,7 @@ static const struct dig_option known[] = {
       "samples per second, a divisor of 1000 from 50 up (default 200)", INTO(track.rate_Hz), 50.0,
       1000.0, "Hz" },
     { "truth", "TRUTH.csv", " record air ", "also write the true pose and wrench of the bucket pin",
-      INTO(truth) },
+      INTO(truth), .writes = true },
     { "no-quantisation", NULL, " record air ",
       "numbers as they are, not in steps of the machine's bus", INTO(quantise), .clears = true },
     { "exact", NULL, " record air ", "as --no-noise --no-quantisation", .take = take_exact },
