@@ -15,15 +15,19 @@ static const double least_variance = 1e-10;
 // In its scale: what is off by no more changes no gravel.
 static const double least_far = 0.02;
 
-static size_t write_parameters(const struct dig_machine_search *const s,
-                               const enum dig_effect_id id, struct dig_model_parameter parameter[])
+// An effect with its parameters as last solved.
+static struct dig_model_effect effect_of(const struct dig_machine_search *const s,
+                                         const enum dig_effect_id id, const double probability)
 {
     const struct dig_effect *const effect = dig_effect_of(id);
     const size_t                   first  = dig_lines_first(&s->fit.lines, id);
     const size_t                   n      = s->fit.lines.columns;
+    struct dig_model_effect        made   = { .effect      = id,
+                                              .probability = probability,
+                                              .parameters  = effect->parameters };
     for (size_t i = 0; i < effect->parameters; i++) {
         const struct dig_effect_parameter *const of = &effect->parameter[i];
-        struct dig_model_parameter *const        p  = &parameter[i];
+        struct dig_model_parameter *const        p  = &made.parameter[i];
 
         const double value = of->absent + of->scale * s->fit.at[first + i];
         const double wide =
@@ -33,7 +37,7 @@ static size_t write_parameters(const struct dig_machine_search *const s,
         p->low   = value - wide;
         p->high  = value + wide;
     }
-    return effect->parameters;
+    return made;
 }
 
 // The numbers of an answer in their order: their columns, and their scales; 0: it has no column.
@@ -265,15 +269,9 @@ void dig_machine_write_answers(struct dig_machine_search *const  s,
         write_both(s, finding->effects, finding->effect, finding);
     }
     for (size_t i = 0; i < finding->candidates; i++) {
-        const struct dig_candidate *const c     = &finding->candidate[i];
-        struct dig_model_effect           alone = { .effect      = c->effect,
-                                                    .probability = c->inclusion,
-                                                    .parameters  = c->parameters };
-        memcpy(alone.parameter, c->parameter, sizeof alone.parameter);
-        if (finding->effects == 1 && finding->effect[0].effect == c->effect) {
-            alone = finding->effect[0];
-        }
-        write_both(s, 1, &alone, finding);
+        const struct dig_model_effect *const alone = &finding->candidate[i].as;
+        const bool found = finding->effects == 1 && finding->effect[0].effect == alone->effect;
+        write_both(s, 1, found ? &finding->effect[0] : alone, finding);
     }
 }
 
@@ -289,17 +287,13 @@ void dig_machine_write_candidates(struct dig_machine_search *const s, const doub
         for (; to > 0 && finding->candidate[to - 1].log_evidence < answer.log_evidence; to--) {
             finding->candidate[to] = finding->candidate[to - 1];
         }
-        struct dig_candidate *const out = &finding->candidate[to];
-
-        *out = (struct dig_candidate){
-            .effect       = (enum dig_effect_id)e,
+        finding->candidate[to] = (struct dig_candidate){
+            .as           = effect_of(s, (enum dig_effect_id)e, inclusion[e]),
             .log_evidence = answer.log_evidence,
             .p_fit = answer.rest2 > s->noise2 * DIG_MACHINE_UNCLEAR_REST2 * s->fit.rows ? 0.0 : 1.0,
-            .inclusion = inclusion[e],
-            .error     = (double)NAN,
-            .seen_in   = DIG_PART_AIR,
+            .error = (double)NAN,
+            .seen_in = DIG_PART_AIR,
         };
-        out->parameters = write_parameters(s, out->effect, out->parameter);
     }
 }
 
@@ -318,12 +312,7 @@ void dig_machine_write_effects(struct dig_machine_search *const s, const double 
         for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
             finding->effect[to] = finding->effect[to - 1];
         }
-        finding->effect[to] = (struct dig_model_effect){
-            .effect      = (enum dig_effect_id)e,
-            .probability = inclusion[e],
-        };
-        finding->effect[to].parameters =
-            write_parameters(s, (enum dig_effect_id)e, finding->effect[to].parameter);
+        finding->effect[to] = effect_of(s, (enum dig_effect_id)e, inclusion[e]);
     }
 }
 

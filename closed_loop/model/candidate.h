@@ -18,16 +18,14 @@ enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };
 /// "air", "soil", "lifted".
 const char *dig_part_name(enum dig_part part);
 
-/// One effect, or the absence of any, as it competed: refitted jointly with the gravel.
+/// One effect as it competed: refitted jointly with the gravel. Its probability is the share of
+/// bootstrap samples of digs in which it was chosen.
 struct dig_candidate {
-    enum dig_effect_id effect;
-    double             log_evidence; // - BIC / 2 less that of no effect
-    double             p_fit;        // chance of a residual this large if this were the whole truth
-    double             inclusion;    // share of bootstrap samples of digs in which it was chosen
-    double             error;        // of the fit digs with it, CONTRACT's metric
-    size_t             parameters;
-    struct dig_model_parameter parameter[DIG_MODEL_PARAMETERS_MAX];
-    enum dig_part              seen_in;
+    struct dig_model_effect as;
+    double                  log_evidence; // - BIC / 2 less that of no effect
+    double                  p_fit; // chance of a residual this large if this were the whole truth
+    double                  error; // of the fit digs with it, CONTRACT's metric
+    enum dig_part           seen_in;
 };
 
 /// Effects that these digs cannot tell apart.

@@ -142,10 +142,11 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         dig_html_put(to,
                      "<tr><th>%s</th><td>%.1f</td><td>%.3f</td><td>%.2f</td><td>%.3f</td>"
                      "<td style=\"text-align:left;min-width:15em\">",
-                     dig_effect_name(c->effect), c->log_evidence, c->p_fit, c->inclusion, c->error);
-        for (size_t p = 0; p < c->parameters; p++) {
-            dig_html_put(to, p == 0 ? "%s %.3g" : ", %s %.3g", c->parameter[p].name,
-                         c->parameter[p].value);
+                     dig_effect_name(c->as.effect), c->log_evidence, c->p_fit, c->as.probability,
+                     c->error);
+        for (size_t p = 0; p < c->as.parameters; p++) {
+            dig_html_put(to, p == 0 ? "%s %.3g" : ", %s %.3g", c->as.parameter[p].name,
+                         c->as.parameter[p].value);
         }
         (void)fputs("</td></tr>\n", to);
     }

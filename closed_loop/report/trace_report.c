@@ -17,12 +17,11 @@ static void put_interval(FILE *const to, const char *const before, const char *c
     dig_json_put(to, "%s: {\"value\": %g, \"low\": %g, \"high\": %g}", name, value, low, high);
 }
 
-static void put_parameters(FILE *const to, const size_t n,
-                           const struct dig_model_parameter parameter[])
+static void put_parameters(FILE *const to, const struct dig_model_effect *const effect)
 {
     (void)fputs(", \"parameters\": {", to);
-    for (size_t p = 0; p < n; p++) {
-        const struct dig_model_parameter *const q = &parameter[p];
+    for (size_t p = 0; p < effect->parameters; p++) {
+        const struct dig_model_parameter *const q = &effect->parameter[p];
         put_interval(to, p == 0 ? "" : ", ", q->name, q->value, q->low, q->high);
     }
     (void)fputs("}}", to);
@@ -80,7 +79,7 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
         if (text[0] != '\0') {
             dig_json_put(to, ", \"meaning\": %s", text);
         }
-        put_parameters(to, effect->parameters, effect->parameter);
+        put_parameters(to, effect);
     }
     (void)fputs("],\n", to);
 }
@@ -116,9 +115,9 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         dig_json_put(to,
                      "{\"name\": %s, \"log_evidence\": %g, \"p_fit\": %g, \"inclusion\": %g, "
                      "\"error\": %g, \"seen_in\": %s",
-                     dig_effect_name(c->effect), c->log_evidence, c->p_fit, c->inclusion, c->error,
-                     dig_part_name(c->seen_in));
-        put_parameters(to, c->parameters, c->parameter);
+                     dig_effect_name(c->as.effect), c->log_evidence, c->p_fit, c->as.probability,
+                     c->error, dig_part_name(c->seen_in));
+        put_parameters(to, &c->as);
     }
     (void)fputs("],\n", to);
 }

@@ -135,12 +135,9 @@ static enum dig_status work_out(const struct dig_trace_work *const w, const enum
     const struct dig_machine_finding *const air = w->air;
     memset(made, 0, sizeof *made);
     for (size_t i = 0; i < air->candidates; i++) {
-        if (air->candidate[i].effect == id) {
-            made->known             = true;
-            made->effect.effect     = id;
-            made->effect.parameters = air->candidate[i].parameters;
-            memcpy(made->effect.parameter, air->candidate[i].parameter,
-                   sizeof made->effect.parameter);
+        if (air->candidate[i].as.effect == id) {
+            made->known  = true;
+            made->effect = air->candidate[i].as;
         }
     }
     double value[DIG_MODEL_PARAMETERS_MAX];

@@ -222,41 +222,27 @@ static double fit_error(const struct dig_trace_work *const w, const struct dig_f
     return dig_score_error(&all);
 }
 
-static void add_candidate(const struct dig_model_effect *const made,
-                          const struct dig_candidate *const as, struct dig_trace *const trace)
-{
-    struct dig_candidate *const c = &trace->candidate[trace->candidates++];
-    *c                            = *as;
-    c->effect                     = made->effect;
-    c->parameters                 = made->parameters;
-    memcpy(c->parameter, made->parameter, sizeof c->parameter);
-}
-
 void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
     const struct dig_search *const s = w->search;
     if (s->is_rock && trace->candidates < DIG_TRACE_CANDIDATES_MAX) {
         // It is looked for when all else has failed, and was in no bootstrap.
-        const struct dig_model_effect made = dig_trace_rock(&s->rock, 0.0);
-        add_candidate(&made,
-                      &(struct dig_candidate){ .log_evidence = s->rock.log_evidence,
-                                               .p_fit        = s->rock.p_fit,
-                                               .inclusion    = (double)NAN,
-                                               .error        = (double)NAN,
-                                               .seen_in      = DIG_PART_SOIL },
-                      trace);
+        trace->candidate[trace->candidates++] =
+            (struct dig_candidate){ .as           = dig_trace_rock(&s->rock, (double)NAN),
+                                    .log_evidence = s->rock.log_evidence,
+                                    .p_fit        = s->rock.p_fit,
+                                    .error        = (double)NAN,
+                                    .seen_in      = DIG_PART_SOIL };
     }
     for (size_t i = 0; i < s->rivals && trace->candidates < DIG_TRACE_CANDIDATES_MAX; i++) {
         const struct dig_rival *const  rival = &s->rival[i];
         const struct dig_fitted *const f     = &rival->fitted;
-        const struct dig_model_effect  made  = dig_trace_effect(w->soil, f, 0, 0.0);
-        add_candidate(&made,
-                      &(struct dig_candidate){ .log_evidence = rival->log_evidence,
-                                               .p_fit        = rival->p_fit,
-                                               .inclusion    = rival->inclusion,
-                                               .error        = fit_error(w, f),
-                                               .seen_in      = dig_trace_seen_in(w, f, 0) },
-                      trace);
+        trace->candidate[trace->candidates++] =
+            (struct dig_candidate){ .as = dig_trace_effect(w->soil, f, 0, rival->inclusion),
+                                    .log_evidence = rival->log_evidence,
+                                    .p_fit        = rival->p_fit,
+                                    .error        = fit_error(w, f),
+                                    .seen_in      = dig_trace_seen_in(w, f, 0) };
     }
 }
 

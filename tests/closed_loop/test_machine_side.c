@@ -267,7 +267,7 @@ TEST(a_weak_effect_is_reported_among_what_it_may_be)
         const struct fault     weak = { .rod_Pa = 3e4 };
         struct campaign *const c    = trace(&weak, seed);
         for (size_t i = 0; i < c->finding.candidates; i++) {
-            print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].effect),
+            print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].as.effect),
                           c->finding.candidate[i].log_evidence);
         }
         print_message("\n");
@@ -311,7 +311,7 @@ TEST(pressures_that_drift_get_no_name_and_say_what_they_follow)
 static void assert_nothing_found(const struct campaign *const c)
 {
     for (size_t i = 0; i < c->finding.candidates; i++) {
-        print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].effect),
+        print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].as.effect),
                       c->finding.candidate[i].log_evidence);
     }
     print_message("air %.3f\n", c->finding.residual_air);
@@ -410,8 +410,8 @@ TEST(a_slow_recorder_is_no_delay)
         struct campaign *const c    = trace(&slow, seed);
         assert_false(c->finding.significant);
         for (size_t i = 0; i < c->finding.candidates; i++) {
-            if (c->finding.candidate[i].effect == DIG_EFFECT_SENSOR_DELAY) {
-                assert_close(c->finding.candidate[i].parameter[0].value, 0.0, 0.001);
+            if (c->finding.candidate[i].as.effect == DIG_EFFECT_SENSOR_DELAY) {
+                assert_close(c->finding.candidate[i].as.parameter[0].value, 0.0, 0.001);
             }
         }
         end(c);

@@ -73,7 +73,7 @@ TEST(adding_the_effect_makes_the_holdout_better)
     // What is left is no more than two sigma of what one dig scatters.
     assert_true(trace.after.value < 2.0 * trace.noise_floor);
     assert_true(isnan(trace.residual[DIG_PART_AIR]));
-    assert_true(trace.candidate[0].effect == DIG_EFFECT_LAYERING);
+    assert_true(trace.candidate[0].as.effect == DIG_EFFECT_LAYERING);
 }
 
 // Of two holdouts: the root of the mean square of their own errors, as near as they are of one

@@ -238,8 +238,8 @@ TEST(a_rock_elsewhere_is_an_obstacle_without_a_template)
     assert_close(value[1], 0.03, 1e-12);
     dig_trace_fill_candidates(&t, &trace);
     assert_int_equal(trace.candidates, 1 + found.rivals);
-    assert_int_equal(trace.candidate[0].effect, DIG_EFFECT_OBSTACLE);
-    assert_string_equal(trace.candidate[0].parameter[0].name, "ahead_m");
+    assert_int_equal(trace.candidate[0].as.effect, DIG_EFFECT_OBSTACLE);
+    assert_string_equal(trace.candidate[0].as.parameter[0].name, "ahead_m");
     free(trace.unlisted);
 }
 
