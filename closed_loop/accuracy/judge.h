@@ -15,8 +15,10 @@ struct dig_error_range {
 
 /// Curves of one dig for the report.
 struct dig_trace_curves {
-    double before[DIG_CHANNELS][DIG_CURVE_POINTS], before_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
-    double after[DIG_CHANNELS][DIG_CURVE_POINTS], after_sd[DIG_CHANNELS][DIG_CURVE_POINTS];
+    double before[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+        before_sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    double after[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
+        after_sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
 /// 1 sigma of one dig about a predicted curve: the table's own relative scatter at each point, at

@@ -38,6 +38,8 @@ struct dig_measured {
     unsigned     pass; // how often the place was dug, counted from 1
     double       pace; // duration of the table's trajectory / of this dig, both at rig scale
 
+    double              off_path_m;  // of a force recording, from its trajectory: rms
+    struct dig_approach approach;    // of a force recording: the nearest that the table holds
     struct dig_approach made;        // as its path tells; zeroed: as the table's, or not told
     double deeper[DIG_CURVE_POINTS]; // recordings/path_depth.h; zeros: along its trajectory
     struct dig_approach taken_off;   // what that adds is no longer in value; zeroed: nothing
@@ -46,13 +48,14 @@ struct dig_measured {
     // among them, as a machine's, or of a force recording whose path is another.
     double depth_share;
 
-    double first, last;                           // progress range from contact to exit
-    bool   measured[DIG_CHANNELS];                // which of the channels there are
-    double value[DIG_CHANNELS][DIG_CURVE_POINTS]; // by the model as it was; 0 where not measured
-    double sigma[DIG_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of the sensors, after smoothing
-    struct dig_lasting lasting;                   // verdict/trace_noise.c tells it
+    double first, last;                  // progress range from contact to exit
+    bool   measured[DIG_FORCE_CHANNELS]; // which of the channels there are
+    double value[DIG_FORCE_CHANNELS]
+                [DIG_CURVE_POINTS]; // by the model as it was; 0 where not measured
+    double sigma[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of the sensors, after smoothing
+    struct dig_lasting lasting;                         // verdict/trace_noise.c tells it
     // What effects of the machine that were found add to value: 0 until any is.
-    double machine[DIG_CHANNELS][DIG_CURVE_POINTS];
+    double machine[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 
     bool   pitch_known; // recorded while it was dug
     double pitch_rad;   // of the machine, mean over the dig

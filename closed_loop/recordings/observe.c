@@ -158,7 +158,7 @@ static bool read_channel(const struct dig_recording *const recording, const stru
 static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                                        const struct dig_recording *const recording,
                                        const struct columns *const c, const bool as_dug,
-                                       struct dig_observed *const       observed,
+                                       struct dig_measured *const       observed,
                                        struct dig_alignment_part *const best_part,
                                        struct dig_error *const          error)
 {
@@ -264,7 +264,7 @@ static struct ends ends_of(const struct dig_trajectory *const t, const double ha
 // By the rows along the trajectory.
 static void tell_path_depth(const struct dig_curve_set *const set,
                             const struct dig_recording *const rows, const struct columns *const c,
-                            struct dig_observed *const o)
+                            struct dig_measured *const o)
 {
     const size_t           t     = (size_t)o->trajectory;
     const struct dig_route route = dig_route_make(&set->trajectory[t], set->tooth_m);
@@ -282,7 +282,7 @@ static void tell_path_depth(const struct dig_curve_set *const set,
 static enum dig_status observe(const struct dig_curve_set *const set,
                                const struct dig_recording *const recording,
                                const struct columns *const c, const bool as_dug,
-                               struct dig_observed *const observed, struct dig_error *const error)
+                               struct dig_measured *const observed, struct dig_error *const error)
 {
     for (size_t i = 0; i < c->rows; i++) {
         c->t_s[i] = recording->row[i].t_s;
@@ -292,11 +292,12 @@ static enum dig_status observe(const struct dig_curve_set *const set,
                              "the recording's bucket hardly moves, expected a dig");
     }
     struct dig_alignment_part part;
-    struct dig_observed       o      = { .trajectory = 0 };
+    struct dig_measured       o      = *observed;
     const enum dig_status     status = find_trajectory(set, recording, c, as_dug, &o, &part, error);
     if (status != DIG_OK) {
         return status;
     }
+    memset(o.deeper, 0, sizeof o.deeper);
     for (size_t i = 0; i < c->rows; i++) {
         c->progress[i] = part.from + (part.to - part.from) * c->progress[i];
     }
@@ -330,7 +331,7 @@ static enum dig_status observe(const struct dig_curve_set *const set,
 
 static enum dig_status observe_any(const struct dig_curve_set *const set,
                                    const struct dig_recording *const recording, const bool as_dug,
-                                   struct dig_observed *const observed,
+                                   struct dig_measured *const observed,
                                    struct dig_error *const    error)
 {
     assert(set != NULL && recording != NULL && observed != NULL);
@@ -352,14 +353,14 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
 
 enum dig_status dig_observe_dig(const struct dig_curve_set *const set,
                                 const struct dig_recording *const recording,
-                                struct dig_observed *const observed, struct dig_error *const error)
+                                struct dig_measured *const observed, struct dig_error *const error)
 {
     return observe_any(set, recording, false, observed, error);
 }
 
 enum dig_status dig_observe_as_dug(const struct dig_curve_set *const set,
                                    const struct dig_recording *const recording,
-                                   struct dig_observed *const        observed,
+                                   struct dig_measured *const        observed,
                                    struct dig_error *const           error)
 {
     return observe_any(set, recording, true, observed, error);

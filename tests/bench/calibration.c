@@ -195,7 +195,7 @@ static void judge_recording(struct bench *const b, const char *const path)
     const char *const    name = strrchr(path, '/') != NULL ? strrchr(path, '/') + 1 : path;
     struct dig_gravel    truth;
     struct dig_recording recording;
-    struct dig_observed  seen;
+    struct dig_measured  seen;
     struct dig_error     error = { "" };
     if (sscanf(name, "mu%lf_mur%lf_rho%lf", &truth.value[0], &truth.value[1], &truth.value[2]) !=
             3 ||

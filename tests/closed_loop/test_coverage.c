@@ -46,7 +46,7 @@ TEST(points_within_the_band_are_counted_where_something_was_measured)
 static struct dig_observation observed(const struct dig_curve_set *const set,
                                        const char *const                 path)
 {
-    struct dig_observed  seen;
+    struct dig_measured  seen;
     struct dig_recording recording = read_recording(path);
     assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
     dig_recording_finish(&recording);

@@ -33,7 +33,7 @@ static void take(const char *const path, const struct dig_gravel *const gravel)
         g++;
     }
     assert_true(g < GRAVELS_MAX && ground[g].digs < DIGS_MAX);
-    struct dig_observed  seen;
+    struct dig_measured  seen;
     struct dig_recording recording = read_recording(path);
     assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
     dig_recording_finish(&recording);

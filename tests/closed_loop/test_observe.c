@@ -72,7 +72,7 @@ TEST(pace_and_place_do_not_matter)
     for (int t = 0; t < 2; t++) {
         for (size_t p = 0; p < 3; p++) {
             struct dig_recording r = drive(&set.trajectory[t], paces[p], slow_wave);
-            struct dig_observed  o;
+            struct dig_measured  o;
             assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
             assert_int_equal(o.trajectory, t);
             assert_true(o.off_path_m < 1e-4);
@@ -95,8 +95,8 @@ TEST(a_fast_dig_is_read_as_the_tables)
 {
     const struct dig_curve_set set      = two_digs();
     static const double        slower[] = { 1.0 / 3.0, 2.0 };
-    struct dig_observed        plain;
-    struct dig_observed        o;
+    struct dig_measured        plain;
+    struct dig_measured        o;
     for (int t = 0; t < 2; t++) {
         struct dig_recording r = drive(&set.trajectory[t], 1.0, quick_wave);
         assert_int_equal(dig_observe_dig(&set, &r, &plain, NULL), DIG_OK);
@@ -145,7 +145,7 @@ TEST(depth_and_attack_of_a_dig_are_told_where_the_table_has_them)
 {
     struct dig_entry_set       others;
     const struct dig_curve_set set = dug_otherwise(&others);
-    struct dig_observed        o;
+    struct dig_measured        o;
     struct dig_recording       r = drive_so(&set, 0, 1.1, 0.03);
     assert_int_equal(dig_observe_as_dug(&set, &r, &o, NULL), DIG_OK);
     assert_int_equal(o.trajectory, 0);
@@ -174,7 +174,7 @@ TEST(of_trajectories_that_differ_by_a_turn_the_nearer_is_told)
     const struct dig_approach turned = { 1.0, 0.03 };
     struct dig_entry_set      others;
     struct dig_curve_set      set = dug_otherwise(&others);
-    struct dig_observed       o;
+    struct dig_measured       o;
     assert_int_equal(dig_approach_apply(&set.trajectory[0], 0.09, others.depth_m[0], &turned,
                                         &set.trajectory[1], NULL),
                      DIG_OK);
@@ -191,7 +191,7 @@ TEST(what_lies_beyond_the_table_is_distance)
 {
     struct dig_entry_set       others;
     const struct dig_curve_set set = dug_otherwise(&others);
-    struct dig_observed        o   = { .pace = 42.0 };
+    struct dig_measured        o   = { .pace = 42.0 };
     struct dig_error           e   = { "" };
     struct dig_recording       r   = drive_so(&set, 0, 1.3, 0.0);
     assert_int_equal(dig_observe_as_dug(&set, &r, &o, &e), DIG_OK);
@@ -200,7 +200,7 @@ TEST(what_lies_beyond_the_table_is_distance)
     assert_close(o.off_path_m, 0.1 * 0.02616, 5e-5);
     dig_recording_finish(&r);
 
-    o = (struct dig_observed){ .pace = 42.0 };
+    o = (struct dig_measured){ .pace = 42.0 };
     r = drive_so(&set, 0, 1.4, 0.0); // 0.2 of 26 mm is more than a twentieth of 90 mm
     assert_int_equal(dig_observe_as_dug(&set, &r, &o, &e), DIG_ENOMATCH);
     assert_non_null(strstr(e.text, "nearest is \"short\", 0.058 bucket lengths away"));
@@ -214,7 +214,7 @@ TEST(a_path_of_another_kind_is_refused_and_writes_nothing)
     const struct dig_trajectory up  = { "up", 0.0, 0.0, 0.0, 1, { { "up", 2.0, 0.0, 0.1, 0.0 } } };
     const struct dig_trajectory still = { "still", 0.0, 0.0,
                                           0.0,     1,   { { "still", 2.0, 0.0, 0.0, 0.0 } } };
-    struct dig_observed         o     = { .trajectory = 42 };
+    struct dig_measured         o     = { .trajectory = 42 };
     struct dig_error            e     = { "" };
     struct dig_recording        r1 = drive(&up, 1.0, slow_wave), r2 = drive(&still, 1.0, slow_wave);
     assert_int_equal(dig_observe_dig(&set, &r1, &o, &e), DIG_ENOMATCH);
@@ -239,8 +239,8 @@ TEST(noise_of_the_rows_is_known_after_smoothing)
     enum { TIMES = 300 };
     const struct dig_curve_set set = two_digs();
     struct dig_recording       r   = drive(&set.trajectory[0], 1.0, slow_wave);
-    struct dig_observed        clean;
-    struct dig_observed        o;
+    struct dig_measured        clean;
+    struct dig_measured        o;
     const size_t               at[]      = { 0, 60, 128, DIG_CURVE_POINTS - 1 };
     double                     off2[4]   = { 0.0 };
     double                     sigma2[4] = { 0.0 };
@@ -279,7 +279,7 @@ TEST(short_gaps_are_bridged_by_what_lies_about_them)
 {
     const struct dig_curve_set set = two_digs();
     struct dig_recording       r   = drive(&set.trajectory[0], 1.0, straight);
-    struct dig_observed        whole, holed;
+    struct dig_measured        whole, holed;
     assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
     for (size_t i = 1; i < r.rows; i += 3) {
         lose(&r, i, i + 1, true);
@@ -304,7 +304,7 @@ TEST(a_long_gap_is_not_measured_and_of_the_moment_refused)
 {
     const struct dig_curve_set set       = two_digs();
     struct dig_error           e         = { "" };
-    struct dig_observed        o         = { .pace = 42.0 };
+    struct dig_measured        o         = { .pace = 42.0 };
     const size_t               gaps[][2] = { { 0, 40 }, { 200, 240 }, { 481, 521 }, { 0, 521 } };
     for (size_t g = 0; g < 4; g++) {
         struct dig_recording r = drive(&set.trajectory[0], 1.0, slow_wave);
@@ -332,7 +332,7 @@ TEST(a_recording_cut_short_tells_what_it_has)
 {
     const struct dig_curve_set set = two_digs();
     struct dig_recording       r   = drive(&set.trajectory[0], 1.0, straight);
-    struct dig_observed        whole, cut;
+    struct dig_measured        whole, cut;
     assert_int_equal(dig_observe_dig(&set, &r, &whole, NULL), DIG_OK);
     assert_close(whole.first, 0.0, 0.0);
     assert_close(whole.last, 1.0, 0.0);
@@ -362,7 +362,7 @@ TEST(rest_and_haste_within_the_dig_do_not_matter)
     const struct dig_curve_set set    = two_digs();
     struct dig_recording       r      = drive(&set.trajectory[0], 1.0, quick_wave);
     struct dig_recording       uneven = { r.rows + 600, calloc(r.rows + 600, sizeof *uneven.row) };
-    struct dig_observed        whole, seen;
+    struct dig_measured        whole, seen;
     double                     t_s = 0.0;
     for (size_t i = 0; i < uneven.rows; i++) {
         const size_t rested = i < r.rows / 2 ? 0 : (i < r.rows / 2 + 600 ? i - r.rows / 2 : 600);
@@ -384,7 +384,7 @@ TEST(rest_before_and_after_is_no_pace)
     const struct dig_curve_set set  = two_digs();
     struct dig_recording       r    = drive(&set.trajectory[1], 0.8, slow_wave);
     struct dig_recording       rest = { r.rows + 400, calloc(r.rows + 400, sizeof *rest.row) };
-    struct dig_observed        whole, rested;
+    struct dig_measured        whole, rested;
     for (size_t i = 0; i < rest.rows; i++) {
         const size_t of = i < 200 ? 0 : (i < r.rows + 200 ? i - 200 : r.rows - 1);
         rest.row[i]     = r.row[of];
@@ -409,7 +409,7 @@ TEST(what_lies_beyond_the_trajectory_is_left_out)
     longer.phase[1].duration_s += 0.15;
     struct dig_recording r = drive(&set.trajectory[0], 1.0, slow_wave);
     struct dig_recording l = drive(&longer, 1.0, slow_wave);
-    struct dig_observed  whole, more;
+    struct dig_measured  whole, more;
     for (size_t i = 0; i < l.rows; i++) {
         l.row[i].My_Nm = slow_wave(l.row[i].t_s - 5.0 - 0.1);
     }

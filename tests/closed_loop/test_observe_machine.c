@@ -23,7 +23,7 @@ static const char *const file[DIGS] = {
 static struct dig_machine    machine;
 static struct dig_rig_track  track;
 static struct dig_curve_set *set;
-static struct dig_observed   direct[DIGS]; // of the force recordings
+static struct dig_measured   direct[DIGS]; // of the force recordings
 
 static int build(void **state)
 {
@@ -69,7 +69,7 @@ static struct dig_machine_recording record(void)
 }
 
 // Norm of the difference over that of the moment, where both were measured.
-static double apart(const struct dig_observation *const a, const struct dig_observed *const b)
+static double apart(const struct dig_observation *const a, const struct dig_measured *const b)
 {
     double miss  = 0.0;
     double whole = 0.0;

@@ -47,7 +47,7 @@ static void trace_digs(const char *const bed, const double memory_s, struct dig_
     struct dig_error          error       = { "" };
     for (size_t i = 0; i < DIGS; i++) {
         char                path[200];
-        struct dig_observed seen;
+        struct dig_measured seen;
         (void)snprintf(path, sizeof path, "tests/data/%s__%s.csv", bed, along[i]);
         struct dig_recording recording = read_recording(path);
         for (size_t c = 0; memory_s > 0.0 && c < DIG_FORCE_CHANNELS; c++) {

@@ -14,7 +14,7 @@
 static struct dig_observation reference(const struct dig_curve_set *const set,
                                         const char *const path, const bool forces)
 {
-    struct dig_observed  seen;
+    struct dig_measured  seen;
     struct dig_recording recording = read_recording(path);
     assert_int_equal(dig_observe_dig(set, &recording, &seen, NULL), DIG_OK);
     dig_recording_finish(&recording);

@@ -98,7 +98,7 @@ static enum dig_status take_recording(const char *const file, struct paper_table
                                       struct dig_error *const error)
 {
     struct dig_recording recording = { 0 };
-    struct dig_observed  seen;
+    struct dig_measured  seen;
     enum dig_status      status = dig_recording_read(file, &recording, error);
     if (status == DIG_OK) {
         status = dig_observe_dig(table->set, &recording, &seen, error);

@@ -87,7 +87,7 @@ static void tell_depth(const struct dig_curve_set *const set,
                        const struct dig_recording *const recording, struct dig_measured *const m)
 {
     static const double same = 0.02; // of the depth
-    struct dig_observed as_dug;
+    struct dig_measured as_dug;
     if (dig_observe_as_dug(set, recording, &as_dug, NULL) == DIG_OK &&
         as_dug.trajectory == m->trajectory && fabs(as_dug.made.depth - 1.0) > same) {
         m->made.depth  = as_dug.made.depth;
@@ -103,38 +103,25 @@ static enum dig_status measure_force(const struct digloop_job *const            
 {
     const struct dig_curve_set *const set       = job->set;
     struct dig_recording              recording = { 0 };
-    struct dig_observed               o         = { .trajectory = 0 };
+    const int                         asked     = m->trajectory;
     enum dig_status                   status =
         tell_recording(job, i, dig_recording_read(r->file, &recording, error), error);
     if (status == DIG_OK) {
         shrink(&recording, scale);
-        status = dig_error_name(error, dig_observe_dig(set, &recording, &o, error), "%s", r->file);
+        status = dig_error_name(error, dig_observe_dig(set, &recording, m, error), "%s", r->file);
     }
     if (status == DIG_OK) {
-        m->made = o.made;
-        memcpy(m->deeper, o.deeper, sizeof m->deeper);
         tell_depth(set, &recording, m);
     }
     dig_recording_finish(&recording);
-    if (status != DIG_OK) {
-        return status;
-    }
-    if (o.trajectory != m->trajectory) {
+    if (status == DIG_OK && m->trajectory != asked) {
         char yaml[DIG_CAMPAIGN_PATH];
         return dig_yaml_refuse(yaml_of(job, yaml), error,
                                "recordings[%zu].trajectory: \"%s\", expected %s, along which %s is "
                                "dug",
-                               i, r->trajectory, set->trajectory[o.trajectory].name, r->file);
+                               i, r->trajectory, set->trajectory[m->trajectory].name, r->file);
     }
-    m->pace  = o.pace;
-    m->first = o.first;
-    m->last  = o.last;
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        m->measured[c] = o.measured[c];
-        memcpy(m->value[c], o.value[c], sizeof m->value[c]);
-        memcpy(m->sigma[c], o.sigma[c], sizeof m->sigma[c]);
-    }
-    return DIG_OK;
+    return status;
 }
 
 static enum dig_status load_machine(const struct digloop_job *const  job,

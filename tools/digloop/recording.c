@@ -118,7 +118,7 @@ static enum dig_status observe_force(const struct dig_curve_set *const set,
                                      struct dig_error *const           error)
 {
     const struct dig_approach none = { .depth = 0.0 };
-    struct dig_observed       seen;
+    struct dig_measured       seen;
     const enum dig_status     status = dig_observe_as_dug(set, recording, &seen, error);
     if (status != DIG_OK) {
         return status;

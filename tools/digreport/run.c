@@ -121,7 +121,7 @@ static enum dig_status add_recordings(const struct digreport_options *const opti
     }
     for (size_t r = 0; r < options->recordings; r++) {
         struct dig_recording recording = { 0 };
-        struct dig_observed  fed;
+        struct dig_measured  fed;
         enum dig_status      status = dig_recording_read(options->recording[r], &recording, error);
         if (status == DIG_OK) {
             status = dig_observe_dig(set, &recording, &fed, error);
