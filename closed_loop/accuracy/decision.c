@@ -37,10 +37,10 @@ static struct products products_of(const struct dig_curve_set *const    set,
             const double at     = (double)k / (DIG_CURVE_POINTS - 1);
             const bool   dug    = at >= dig->first && at <= dig->last;
             const double time_s = dug ? dig_score_time_s(set, t, k) : 0.0;
-            const double change =
-                curves->after[DIG_CHANNEL_MY_Nm][k] - curves->before[DIG_CHANNEL_MY_Nm][k];
+            const double change = curves->after.value[DIG_CHANNEL_MY_Nm][k] -
+                                  curves->before.value[DIG_CHANNEL_MY_Nm][k];
             of.change += time_s * change * change;
-            moved[b] += time_s * change * curves->before_sd[DIG_CHANNEL_MY_Nm][k];
+            moved[b] += time_s * change * curves->before.sd[DIG_CHANNEL_MY_Nm][k];
         }
     }
     for (size_t a = 0; a < DIG_FEATURE_BINS; a++) {
@@ -51,25 +51,22 @@ static struct products products_of(const struct dig_curve_set *const    set,
     return of;
 }
 
-double dig_decision_chance_of_worse(const struct dig_curve_set *const set,
-                                    const struct dig_scatter *const scatter, const size_t digs,
-                                    const struct dig_measured     measured[],
-                                    const struct dig_trace_curves curves[])
+double dig_decision_chance_of_worse(const struct dig_judged *const  judged,
+                                    const struct dig_scatter *const scatter)
 {
-    assert(set != NULL && scatter != NULL && digs > 0 && measured != NULL && curves != NULL);
+    assert(judged != NULL && judged->digs > 0 && scatter != NULL);
     double sum = 0.0;
-    for (size_t i = 0; i < digs; i++) {
-        const struct products of = products_of(set, scatter, &measured[i], &curves[i]);
+    for (size_t i = 0; i < judged->digs; i++) {
+        const struct products of =
+            products_of(judged->set, scatter, &judged->measured[i], &judged->curves[i]);
         sum += of.scatter > 0.0 ? 0.5 * erfc(of.change / sqrt(8.0 * of.scatter)) : 0.5;
     }
-    return sum / (double)digs;
+    return sum / (double)judged->digs;
 }
 
-bool dig_decision_brings_nearer(const struct dig_curve_set *const set, const size_t digs,
-                                const struct dig_measured     measured[],
-                                const struct dig_trace_curves curves[], const bool fit[])
+bool dig_decision_brings_nearer(const struct dig_judged *const judged, const bool fit[])
 {
     enum { SEED = 1 }; // of the interval, which is not asked for
-    return dig_judge_error(set, digs, measured, curves, fit, true, SEED).value <
-           dig_judge_error(set, digs, measured, curves, fit, false, SEED).value;
+    return dig_judge_error(judged, fit, true, SEED).value <
+           dig_judge_error(judged, fit, false, SEED).value;
 }

@@ -10,15 +10,11 @@
 /// The chance that the curves after are further from the next dig than those before, were they
 /// exactly its mean: a mean over these digs. A change d of the moment makes a dig that scatters by
 /// e worse where 2 <d, e> < -<d, d>, products over rig time; e is normal, as large as curves'
-/// before_sd and correlated from bin to bin as the scatter is. 1/2 where nothing changes.
-double dig_decision_chance_of_worse(const struct dig_curve_set *set,
-                                    const struct dig_scatter *scatter, size_t digs,
-                                    const struct dig_measured     measured[],
-                                    const struct dig_trace_curves curves[]);
+/// before.sd and correlated from bin to bin as the scatter is. 1/2 where nothing changes.
+double dig_decision_chance_of_worse(const struct dig_judged  *judged,
+                                    const struct dig_scatter *scatter);
 
 /// Whether CONTRACT's error of the moment after is below that before, over the digs fitted to.
-bool dig_decision_brings_nearer(const struct dig_curve_set *set, size_t digs,
-                                const struct dig_measured     measured[],
-                                const struct dig_trace_curves curves[], const bool fit[]);
+bool dig_decision_brings_nearer(const struct dig_judged *judged, const bool fit[]);
 
 #endif // DIG_CLOSED_LOOP_ACCURACY_DECISION_H

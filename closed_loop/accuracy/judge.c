@@ -76,38 +76,35 @@ static void join(struct dig_score *const sum, const struct dig_score *const one)
 }
 
 // Scores of the moment of the digs taken, one by one and all together; how many.
-static size_t score_each(const struct dig_curve_set *const set, const size_t digs,
-                         const struct dig_measured     measured[],
-                         const struct dig_trace_curves curves[], const bool take[],
-                         const bool after, struct dig_score one[DIG_MEASURED_MAX],
-                         struct dig_score *const all)
+static size_t score_each(const struct dig_judged *const judged, const bool take[], const bool after,
+                         struct dig_score one[DIG_MEASURED_MAX], struct dig_score *const all)
 {
-    size_t n = 0;
-    *all     = (struct dig_score){ 0 };
-    for (size_t i = 0; i < digs; i++) {
-        const struct dig_measured *const     dig = &measured[i];
-        const struct dig_trace_curves *const c   = &curves[i];
+    const struct dig_curve_set *const set = judged->set;
+    size_t                            n   = 0;
+    *all                                  = (struct dig_score){ 0 };
+    assert(judged->digs <= DIG_MEASURED_MAX);
+    for (size_t i = 0; i < judged->digs; i++) {
+        const struct dig_measured *const  dig = &judged->measured[i];
+        const struct dig_predicted *const predicted =
+            after ? &judged->curves[i].after : &judged->curves[i].before;
         if (take[i]) {
             one[n] = (struct dig_score){ 0 };
             dig_score_add(&one[n], &set->trajectory[dig->trajectory], set->tooth_m, dig->first,
                           dig->last, dig->value[DIG_CHANNEL_MY_Nm],
-                          (after ? c->after : c->before)[DIG_CHANNEL_MY_Nm],
-                          (after ? c->after_sd : c->before_sd)[DIG_CHANNEL_MY_Nm]);
+                          predicted->value[DIG_CHANNEL_MY_Nm], predicted->sd[DIG_CHANNEL_MY_Nm]);
             join(all, &one[n++]);
         }
     }
     return n;
 }
 
-struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, const size_t digs,
-                                       const struct dig_measured     measured[],
-                                       const struct dig_trace_curves curves[], const bool take[],
+struct dig_error_range dig_judge_error(const struct dig_judged *const judged, const bool take[],
                                        const bool after, const uint64_t seed)
 {
-    assert(digs <= DIG_MEASURED_MAX);
+    assert(judged != NULL);
     struct dig_score       one[DIG_MEASURED_MAX];
     struct dig_score       all;
-    const size_t           n     = score_each(set, digs, measured, curves, take, after, one, &all);
+    const size_t           n     = score_each(judged, take, after, one, &all);
     struct dig_error_range range = { (double)NAN, (double)NAN, (double)NAN };
     if (n == 0) {
         return range;
@@ -130,12 +127,11 @@ struct dig_error_range dig_judge_error(const struct dig_curve_set *const set, co
     return range;
 }
 
-double dig_judge_floor(const struct dig_curve_set *const set, const size_t digs,
-                       const struct dig_measured measured[], const struct dig_trace_curves curves[],
-                       const bool take[])
+double dig_judge_floor(const struct dig_judged *const judged, const bool take[])
 {
+    assert(judged != NULL);
     struct dig_score one[DIG_MEASURED_MAX];
     struct dig_score all;
-    const size_t     n = score_each(set, digs, measured, curves, take, true, one, &all);
+    const size_t     n = score_each(judged, take, true, one, &all);
     return n > 0 ? dig_score_noise_floor(&all) : (double)NAN;
 }

@@ -13,12 +13,22 @@ struct dig_error_range {
     double value, low, high;
 };
 
-/// Curves of one dig for the report.
+/// What is predicted of a dig, and 1 sigma of one dig about it.
+struct dig_predicted {
+    double value[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS], sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+};
+
+/// Of one dig, without what was found and with it.
 struct dig_trace_curves {
-    double before[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
-        before_sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-    double after[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
-        after_sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    struct dig_predicted before, after;
+};
+
+/// Digs, and what was predicted of them; all of it the caller's.
+struct dig_judged {
+    const struct dig_curve_set *set; // whose trajectories the digs are of
+    size_t                      digs;
+    const struct dig_measured  *measured; // [digs]
+    struct dig_trace_curves    *curves;   // [digs]
 };
 
 /// 1 sigma of one dig about a predicted curve: the table's own relative scatter at each point, at
@@ -37,14 +47,10 @@ void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS
 
 /// The error of the moment before or after over the digs that take[] allows, and its 90 % interval
 /// by drawing recordings: of one recording alone both ends are the value. All NaN without any.
-struct dig_error_range dig_judge_error(const struct dig_curve_set *set, size_t digs,
-                                       const struct dig_measured     measured[],
-                                       const struct dig_trace_curves curves[], const bool take[],
+struct dig_error_range dig_judge_error(const struct dig_judged *judged, const bool take[],
                                        bool after, uint64_t seed);
 
 /// 1 sigma of what the error after would be of a complete model.
-double dig_judge_floor(const struct dig_curve_set *set, size_t digs,
-                       const struct dig_measured measured[], const struct dig_trace_curves curves[],
-                       const bool take[]);
+double dig_judge_floor(const struct dig_judged *judged, const bool take[]);
 
 #endif // DIG_CLOSED_LOOP_ACCURACY_JUDGE_H

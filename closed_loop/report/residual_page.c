@@ -9,7 +9,8 @@
 static const char *const of_channel[DIG_FORCE_CHANNELS] = { "moment", "Fx", "Fz" };
 
 // One line a dig and channel: sigmas by part, and the share of the whole dig before and after.
-static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
+static void put_lines(FILE *const to, const struct dig_measured *const m,
+                      const struct dig_residuals_dig *const dig)
 {
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         const struct dig_residual *const soil   = &dig->before[DIG_PART_SOIL][c];
@@ -19,8 +20,8 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
         }
         (void)fputs("<tr><th>", to);
         if (c == DIG_CHANNEL_MY_Nm) {
-            dig_html_without_folders(to, dig->name);
-            (void)fprintf(to, "<br><span class=muted>%s</span>", dig_residuals_use_name(dig->use));
+            dig_html_without_folders(to, m->name);
+            (void)fprintf(to, "<br><span class=muted>%s</span>", dig_residuals_use_name(m->use));
         }
         dig_html_put(to,
                      "</th><td>%s</td><td>%.1f</td><td>%.1f</td><td>%.1f</td><td>%.3f</td>"
@@ -33,14 +34,15 @@ static void put_lines(FILE *const to, const struct dig_residuals_dig *const dig)
     }
 }
 
-static void put_digs(FILE *const to, const struct dig_residuals *const residuals)
+static void put_digs(FILE *const to, const struct dig_trace *const trace)
 {
+    const struct dig_residuals *const residuals = trace->residuals;
     (void)fputs("<h2>Residual dig by dig</h2>\n<table><tr><th>dig</th><th>of</th>"
                 "<th>air, σ</th><th>soil, σ</th><th>lifted, σ</th><th>before</th><th>after</th>"
                 "</tr>\n",
                 to);
-    for (size_t i = 0; i < residuals->digs; i++) {
-        put_lines(to, &residuals->dig[i]);
+    for (size_t i = 0; i < trace->judged.digs; i++) {
+        put_lines(to, &trace->judged.measured[i], &residuals->dig[i]);
     }
     (void)fprintf(to,
                   "</table>\n<p class=muted>Measured minus predicted by the gravel alone, rms over "
@@ -111,14 +113,15 @@ static void put_slopes(FILE *const to, const struct dig_residuals *const residua
                 to);
 }
 
-enum dig_status dig_residuals_html(const struct dig_residuals *const residuals, FILE *const to,
+enum dig_status dig_residuals_html(const struct dig_trace *const trace, FILE *const to,
                                    struct dig_error *const error)
 {
-    assert(to != NULL);
+    assert(trace != NULL && to != NULL);
+    const struct dig_residuals *const residuals = trace->residuals;
     if (residuals == NULL) {
         return DIG_OK;
     }
-    put_digs(to, residuals);
+    put_digs(to, trace);
     if (!residuals->known[DIG_CHANNEL_MY_Nm]) {
         return DIG_OK;
     }

@@ -35,14 +35,15 @@ static void put_residual(FILE *const to, const char *const name,
                  residual->relative, residual->sigmas);
 }
 
-static void put_dig(FILE *const to, const struct dig_residuals_dig *const dig)
+static void put_dig(FILE *const to, const struct dig_curve_set *const set,
+                    const struct dig_measured *const m, const struct dig_residuals_dig *const dig)
 {
+    const struct dig_approach taken_off = dig_approach_normalized(&m->taken_off);
     dig_json_put(to,
                  "{\"file\": %s, \"trajectory\": %s, \"role\": %s, \"pass\": %u, \"depth\": %g, "
                  "\"attack_deg\": %g, \"air\": {\"sigmas\": %g}",
-                 dig->name, dig->trajectory, dig_residuals_use_name(dig->use), dig->pass,
-                 dig->taken_off.depth, dig->taken_off.attack_rad / DIG_RAD_PER_DEG,
-                 dig->air_sigmas);
+                 m->name, set->trajectory[m->trajectory].name, dig_residuals_use_name(m->use),
+                 m->pass, taken_off.depth, taken_off.attack_rad / DIG_RAD_PER_DEG, dig->air_sigmas);
     for (int p = DIG_PART_SOIL; p < DIG_TRACE_PHASES; p++) {
         dig_json_put(to, ",\n   %s: {", dig_part_name((enum dig_part)p));
         bool any = false;
@@ -90,13 +91,14 @@ static void put_white(FILE *const to, const char *const name,
                  white->digs);
 }
 
-void dig_residuals_json(const struct dig_residuals *const residuals, FILE *const to)
+void dig_residuals_json(const struct dig_trace *const trace, FILE *const to)
 {
-    assert(to != NULL);
+    assert(trace != NULL && to != NULL);
+    const struct dig_residuals *const residuals = trace->residuals;
     (void)fputs(" \"residuals\": [", to);
-    for (size_t i = 0; residuals != NULL && i < residuals->digs; i++) {
+    for (size_t i = 0; residuals != NULL && i < trace->judged.digs; i++) {
         (void)fputs(i == 0 ? "\n  " : ",\n  ", to);
-        put_dig(to, &residuals->dig[i]);
+        put_dig(to, trace->judged.set, &trace->judged.measured[i], &residuals->dig[i]);
     }
     (void)fputs("],\n \"residual_against\": [", to);
     bool any = false;

@@ -5,6 +5,7 @@
 #define DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H
 
 #include "closed_loop/verdict/residuals.h"
+#include "closed_loop/verdict/trace.h"
 #include "core/error.h"
 
 #include <stdio.h>
@@ -18,12 +19,12 @@ void dig_residuals_approach_text(const struct dig_approach *taken_off,
                                  char                       text[DIG_APPROACH_TEXT_SIZE]);
 
 /// The members "residuals", "residual_against" and "whiteness" of the object, each with a comma and
-/// a line feed. NULL: empty lists and null.
-void dig_residuals_json(const struct dig_residuals *residuals, FILE *to);
+/// a line feed. Not worked out: empty lists and null.
+void dig_residuals_json(const struct dig_trace *trace, FILE *to);
 
-/// A table dig by dig, one of the slopes, pictures over path and depth. Nothing for NULL. DIG_EIO
-/// as dig_plot_figure().
-DIG_MUST_CHECK enum dig_status dig_residuals_html(const struct dig_residuals *residuals, FILE *to,
+/// A table dig by dig, one of the slopes, pictures over path and depth. Nothing where they were not
+/// worked out. DIG_EIO as dig_plot_figure().
+DIG_MUST_CHECK enum dig_status dig_residuals_html(const struct dig_trace *trace, FILE *to,
                                                   struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H

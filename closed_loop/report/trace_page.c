@@ -172,10 +172,10 @@ static void fill_picture(const struct dig_trace_curves *const curves,
 {
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-        const double half     = unit * DIG_REPORT_BAND_SIGMAS * curves->after_sd[channel][k];
+        const double half     = unit * DIG_REPORT_BAND_SIGMAS * curves->after.sd[channel][k];
         p->x[k]               = 100.0 * progress;
-        p->before[k]          = unit * curves->before[channel][k];
-        p->after[k]           = unit * curves->after[channel][k];
+        p->before[k]          = unit * curves->before.value[channel][k];
+        p->after[k]           = unit * curves->after.value[channel][k];
         p->low[k]             = p->after[k] - half;
         p->high[k]            = p->after[k] + half;
         p->measured[k]        = progress >= dig->first && progress <= dig->last
@@ -212,7 +212,8 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
     // Where nothing was changed before is after, and is drawn once.
     const bool same =
         // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
-        memcmp(curves->before[channel], curves->after[channel], sizeof curves->after[channel]) == 0;
+        memcmp(curves->before.value[channel], curves->after.value[channel],
+               sizeof curves->after.value[channel]) == 0;
     struct dig_plot plot = {
         .title        = title,
         .x_label      = "path of the dig done, %",
@@ -248,19 +249,15 @@ static enum dig_status put_dig(FILE *const to, const struct dig_trace_curves *co
 }
 
 static enum dig_status put_digs(FILE *const to, const struct dig_trace *const trace,
-                                const struct dig_trace_subject *const subject,
-                                struct dig_error *const               error)
+                                const double lambda, struct dig_error *const error)
 {
-    if (trace->curves == NULL || subject->measured == NULL || subject->set == NULL) {
-        return DIG_OK;
-    }
+    const struct dig_judged *const judged = &trace->judged;
     (void)fputs("<h2>Dig by dig</h2>\n<div class=grid>\n", to);
     enum dig_status status = DIG_OK;
-    for (size_t d = 0; d < trace->digs && d < subject->digs && status == DIG_OK; d++) {
-        const struct dig_measured *const dig = &subject->measured[d];
-        assert((size_t)dig->trajectory < subject->set->trajectories);
-        status = put_dig(to, &trace->curves[d], dig, subject->set->trajectory[dig->trajectory].name,
-                         subject->lambda, error);
+    for (size_t d = 0; d < judged->digs && status == DIG_OK; d++) {
+        const struct dig_measured *const dig = &judged->measured[d];
+        status = put_dig(to, &judged->curves[d], dig, judged->set->trajectory[dig->trajectory].name,
+                         lambda, error);
     }
     (void)fputs("</div>\n<p class=muted>Before: the table with the gravel alone refitted. After: "
                 "with what was found, and the band that holds 90 % of digs. Forces are drawn where "
@@ -331,7 +328,7 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     (void)snprintf(title, sizeof title, "What the model lacks: %.*s", (int)(ends - begins),
                    campaign + begins);
     dig_html_begin(to, title);
-    dig_html_put(to, "<p class=result>%s</p>\n<p>%zu digs against ", sentence, trace->digs);
+    dig_html_put(to, "<p class=result>%s</p>\n<p>%zu digs against ", sentence, trace->judged.digs);
     dig_html_without_folders(to, subject->table);
     if (subject->lambda > 0.0) {
         (void)fprintf(to,
@@ -346,12 +343,12 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     put_sets(to, trace);
     put_errors(to, trace);
     put_found(to, trace);
-    const enum dig_status status = put_digs(to, trace, subject, error);
+    const enum dig_status status = put_digs(to, trace, subject->lambda, error);
     if (status != DIG_OK) {
         return status;
     }
     put_residuals(to, trace);
-    const enum dig_status left = dig_residuals_html(trace->residuals, to, error);
+    const enum dig_status left = dig_residuals_html(trace, to, error);
     if (left != DIG_OK) {
         return left;
     }

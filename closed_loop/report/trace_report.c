@@ -153,7 +153,7 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     put_material(to, trace);
     put_error(to, "error_before", &trace->before);
     put_error(to, "error_after", &trace->after);
-    dig_json_put(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->digs,
+    dig_json_put(to, " \"digs\": %zu, \"holdouts\": %zu, \"residual\": {", trace->judged.digs,
                  trace->holdouts);
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         dig_json_put(to, p == 0 ? "%s: %g" : ", %s: %g", dig_part_name((enum dig_part)p),
@@ -161,7 +161,7 @@ void dig_trace_json(const struct dig_trace *const trace, FILE *const to)
     }
     dig_json_put(to, "}, \"no_air\": %i,\n", trace->no_air);
     put_candidates(to, trace);
-    dig_residuals_json(trace->residuals, to);
+    dig_residuals_json(trace, to);
     dig_json_put(to, " \"advice\": %s", trace->advice);
     put_tells(to, trace);
     dig_json_put(to,
@@ -259,9 +259,9 @@ static void put_meanings(FILE *const to, const struct dig_trace *const trace)
 // Which digs were compared as if they had been dug as the table's.
 static void put_approaches(FILE *const to, const struct dig_trace *const trace)
 {
-    for (size_t i = 0; trace->residuals != NULL && i < trace->residuals->digs; i++) {
-        const struct dig_residuals_dig *const dig = &trace->residuals->dig[i];
-        char                                  way[DIG_APPROACH_TEXT_SIZE];
+    for (size_t i = 0; i < trace->judged.digs; i++) {
+        const struct dig_measured *const dig = &trace->judged.measured[i];
+        char                             way[DIG_APPROACH_TEXT_SIZE];
         dig_residuals_approach_text(&dig->taken_off, way);
         if (way[0] != '\0') {
             (void)fprintf(to, "  %s: dug at %s, as its path tells; taken off\n", dig->name,

@@ -4,21 +4,16 @@
 #ifndef DIG_CLOSED_LOOP_REPORT_TRACE_REPORT_H
 #define DIG_CLOSED_LOOP_REPORT_TRACE_REPORT_H
 
-#include "closed_loop/recordings/measured.h"
 #include "closed_loop/verdict/trace.h"
-#include "core/curve.h"
 #include "core/error.h"
 
 #include <stdio.h>
 
 /// What the page names and draws beside the trace itself.
 struct dig_trace_subject {
-    const char                 *campaign; // folder or title, for people
-    const char                 *table;    // file
-    double                      lambda;   // size of what dug over the table's; 0: not known
-    const struct dig_curve_set *set;      // whose trajectories the digs are of
-    size_t                      digs;     // as traced
-    const struct dig_measured  *measured; // [digs]
+    const char *campaign; // folder or title, for people
+    const char *table;    // file
+    double      lambda;   // size of what dug over the table's; 0: not known
 };
 
 /// One JSON object and a line feed. No effect is the verdict ["none"]. Numbers that are not known

@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 const char *dig_residual_channel_name(const enum dig_channel channel)
@@ -31,14 +30,12 @@ static struct dig_residual sum_up(const struct integral *const part, const doubl
 }
 
 void dig_residual_of(const struct dig_curve_set *const set, const struct dig_measured *const dig,
-                     const struct dig_trace_curves *const curves, const bool after,
+                     const struct dig_predicted *const predicted,
                      struct dig_residual residual[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS])
 {
-    assert(set != NULL && dig != NULL && curves != NULL && residual != NULL);
+    assert(set != NULL && dig != NULL && predicted != NULL && residual != NULL);
     assert((size_t)dig->trajectory < set->trajectories);
-    const size_t trajectory                          = (size_t)dig->trajectory;
-    const double(*const predicted)[DIG_CURVE_POINTS] = after ? curves->after : curves->before;
-    const double(*const sd)[DIG_CURVE_POINTS]        = after ? curves->after_sd : curves->before_sd;
+    const size_t    trajectory = (size_t)dig->trajectory;
     struct integral part[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
     double          whole2[DIG_FORCE_CHANNELS] = { 0.0 };
     memset(part, 0, sizeof part);
@@ -51,8 +48,8 @@ void dig_residual_of(const struct dig_curve_set *const set, const struct dig_mea
             dig_regressors_is_lifted(set, trajectory, progress) ? DIG_PART_LIFTED : DIG_PART_SOIL;
         const double time_s = dig_score_time_s(set, trajectory, k);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-            const double wrong = dig->value[c][k] - predicted[c][k];
-            const double sigma = hypot(sd[c][k], dig->sigma[c][k]);
+            const double wrong = dig->value[c][k] - predicted->value[c][k];
+            const double sigma = hypot(predicted->sd[c][k], dig->sigma[c][k]);
             if (dig->measured[c]) {
                 part[in][c].wrong2 += wrong * wrong * time_s;
                 part[in][c].over_sigma2 += sigma > 0.0 ? pow(wrong / sigma, 2.0) * time_s : 0.0;
@@ -68,22 +65,6 @@ void dig_residual_of(const struct dig_curve_set *const set, const struct dig_mea
     }
 }
 
-static void fill_dig(const struct dig_trace_work *const   w,
-                     const struct dig_trace_curves *const curves, const size_t i,
-                     struct dig_residuals_dig *const to)
-{
-    const struct dig_measured *const dig = &w->measured[i];
-    (void)snprintf(to->name, sizeof to->name, "%s", dig->name);
-    (void)snprintf(to->trajectory, sizeof to->trajectory, "%s",
-                   w->set->trajectory[dig->trajectory].name);
-    to->use        = dig->use;
-    to->pass       = dig->pass;
-    to->taken_off  = dig_approach_normalized(&dig->taken_off);
-    to->air_sigmas = w->machine != NULL ? w->air->residual_air_of[i] : (double)NAN;
-    dig_residual_of(w->set, dig, curves, false, to->before);
-    dig_residual_of(w->set, dig, curves, true, to->after);
-}
-
 // States and relative residuals of the digs fitted to; n points from first on were measured.
 struct points {
     size_t digs;
@@ -95,7 +76,7 @@ struct points {
 // Adds a dig: over the size of what was predicted of the channel; both forces have that of their
 // resultant. One without any has none.
 static void add(const struct dig_curve_set *const set, const struct dig_measured *const dig,
-                const struct dig_trace_curves *const curves, const size_t channel,
+                const double predicted[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS], const size_t channel,
                 struct points *const p)
 {
     const size_t i   = p->digs;
@@ -104,10 +85,10 @@ static void add(const struct dig_curve_set *const set, const struct dig_measured
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double progress = (double)k / (DIG_CURVE_POINTS - 1);
         if (progress >= dig->first && progress <= dig->last) {
-            const double size = channel == DIG_CHANNEL_MY_Nm
-                                    ? curves->before[DIG_CHANNEL_MY_Nm][k]
-                                    : hypot(curves->before[DIG_CHANNEL_FX_N][k],
-                                            curves->before[DIG_CHANNEL_FZ_N][k]);
+            const double size =
+                channel == DIG_CHANNEL_MY_Nm
+                    ? predicted[DIG_CHANNEL_MY_Nm][k]
+                    : hypot(predicted[DIG_CHANNEL_FX_N][k], predicted[DIG_CHANNEL_FZ_N][k]);
             sum += size * size;
             p->first[i] = k - p->n[i]++;
         }
@@ -117,7 +98,7 @@ static void add(const struct dig_curve_set *const set, const struct dig_measured
         return;
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        p->y[i][k] = (dig->value[channel][k] - curves->before[channel][k]) / size;
+        p->y[i][k] = (dig->value[channel][k] - predicted[channel][k]) / size;
     }
     dig_regressors_along(set, dig, p->state[i]);
     p->digs++;
@@ -132,7 +113,7 @@ static void fill_trends(const struct dig_trace_work *const w,
         p.digs = 0;
         for (size_t i = 0; i < w->digs; i++) {
             if (w->measured[i].use != DIG_USE_HOLDOUT && w->measured[i].measured[c]) {
-                add(w->set, &w->measured[i], &curves[i], c, &p);
+                add(w->set, &w->measured[i], curves[i].before.value, c, &p);
             }
         }
         residuals->known[c] = p.digs > 0;
@@ -167,9 +148,11 @@ void dig_residuals_make(const struct dig_trace_work *const w,
 {
     assert(w != NULL && curves != NULL && residuals != NULL);
     memset(residuals, 0, sizeof *residuals);
-    residuals->digs = w->digs;
     for (size_t i = 0; i < w->digs; i++) {
-        fill_dig(w, &curves[i], i, &residuals->dig[i]);
+        struct dig_residuals_dig *const dig = &residuals->dig[i];
+        dig->air_sigmas = w->machine != NULL ? w->air->residual_air_of[i] : (double)NAN;
+        dig_residual_of(w->set, &w->measured[i], &curves[i].before, dig->before);
+        dig_residual_of(w->set, &w->measured[i], &curves[i].after, dig->after);
     }
     fill_trends(w, curves, residuals);
     fill_whiteness(w, residuals);

@@ -18,19 +18,13 @@ struct dig_residual {
     double sigmas; // rms of it over 1 sigma of one dig about the prediction, sensors included
 };
 
-/// By the curves before or after, of enum dig_part DIG_PART_SOIL and DIG_PART_LIFTED; that of the
-/// air is all NaN.
+/// By what was predicted, of enum dig_part DIG_PART_SOIL and DIG_PART_LIFTED; that of the air is
+/// all NaN.
 void dig_residual_of(const struct dig_curve_set *set, const struct dig_measured *dig,
-                     const struct dig_trace_curves *curves, bool after,
-                     struct dig_residual residual[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS]);
+                     const struct dig_predicted *predicted,
+                     struct dig_residual         residual[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS]);
 
 struct dig_residuals_dig {
-    char         name[64];
-    char         trajectory[DIG_NAME_SIZE];
-    enum dig_use use;
-    unsigned     pass;
-    // What that adds has been taken off; the plain one: nothing has.
-    struct dig_approach taken_off;
     // In free air, rms over the rms expected, machine as its file says; NaN: none, or a holdout.
     double              air_sigmas;
     struct dig_residual before[DIG_TRACE_PHASES][DIG_FORCE_CHANNELS];
@@ -38,8 +32,7 @@ struct dig_residuals_dig {
 };
 
 struct dig_residuals {
-    size_t                   digs;
-    struct dig_residuals_dig dig[DIG_MEASURED_MAX];
+    struct dig_residuals_dig dig[DIG_MEASURED_MAX]; // those judged
     // Before, of the digs fitted to that measure the channel, over the rms of what was predicted
     // (of forces: of their resultant). known: any dig does.
     bool             known[DIG_FORCE_CHANNELS];

@@ -29,7 +29,7 @@ void dig_trace_finish(struct dig_trace *const trace)
 {
     if (trace != NULL) {
         free(trace->unlisted);
-        free(trace->curves);
+        free(trace->judged.curves);
         free(trace->residuals);
         memset(trace, 0, sizeof *trace);
     }
@@ -123,17 +123,10 @@ static void drop_what_is_not_worth_it(const struct dig_trace_work *const w,
                                       struct dig_trace *const            trace)
 {
     trace->applied =
-        w->confirmed && !is_as_filed(w) &&
-        dig_decision_brings_nearer(w->set, w->digs, w->measured, trace->curves, w->fit) &&
-        dig_decision_chance_of_worse(w->set, w->scatter, w->digs, w->measured, trace->curves) <=
-            most_chance_of_worse;
-    if (trace->applied) {
-        return;
-    }
-    for (size_t i = 0; i < w->digs; i++) {
-        struct dig_trace_curves *const c = &trace->curves[i];
-        memcpy(c->after, c->before, sizeof c->after);
-        memcpy(c->after_sd, c->before_sd, sizeof c->after_sd);
+        w->confirmed && !is_as_filed(w) && dig_decision_brings_nearer(&trace->judged, w->fit) &&
+        dig_decision_chance_of_worse(&trace->judged, w->scatter) <= most_chance_of_worse;
+    for (size_t i = 0; i < w->digs && !trace->applied; i++) {
+        trace->judged.curves[i].after = trace->judged.curves[i].before;
     }
 }
 
@@ -144,12 +137,9 @@ static void fill_errors(const struct dig_trace_work *const w, struct dig_trace *
         any = any || w->holdout[i];
         trace->holdouts += w->holdout[i] ? 1 : 0;
     }
-    trace->before = dig_judge_error(w->set, w->digs, w->measured, trace->curves, w->holdout, false,
-                                    w->settings->seed);
-    trace->after  = dig_judge_error(w->set, w->digs, w->measured, trace->curves, w->holdout, true,
-                                    w->settings->seed);
-    trace->noise_floor =
-        dig_judge_floor(w->set, w->digs, w->measured, trace->curves, any ? w->holdout : w->fit);
+    trace->before      = dig_judge_error(&trace->judged, w->holdout, false, w->settings->seed);
+    trace->after       = dig_judge_error(&trace->judged, w->holdout, true, w->settings->seed);
+    trace->noise_floor = dig_judge_floor(&trace->judged, any ? w->holdout : w->fit);
 }
 
 // Where nothing better is to be said: why a probability stops at one half.
@@ -168,10 +158,13 @@ static void advise_on_size(const struct dig_trace_work *const w, struct dig_trac
 
 static enum dig_status report(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    trace->digs      = w->digs;
-    trace->curves    = calloc(w->digs, sizeof *trace->curves);
+    trace->judged =
+        (struct dig_judged){ .set      = w->set,
+                             .digs     = w->digs,
+                             .measured = w->measured,
+                             .curves   = calloc(w->digs, sizeof(struct dig_trace_curves)) };
     trace->residuals = malloc(sizeof *trace->residuals);
-    if (trace->curves == NULL || trace->residuals == NULL) {
+    if (trace->judged.curves == NULL || trace->residuals == NULL) {
         return DIG_ENOMEM;
     }
     fill_decision(w, trace);
@@ -181,10 +174,10 @@ static enum dig_status report(const struct dig_trace_work *const w, struct dig_t
     }
     trace->significant = trace->significant || trace->effects > 0;
     dig_trace_fill_candidates(w, trace);
-    dig_trace_fill_curves(w, trace->unlisted, trace->curves);
+    dig_trace_fill_curves(w, trace->unlisted, trace->judged.curves);
     drop_what_is_not_worth_it(w, trace);
     fill_errors(w, trace);
-    dig_residuals_make(w, trace->curves, trace->residuals);
+    dig_residuals_make(w, trace->judged.curves, trace->residuals);
     status = dig_tell_apart(w, trace);
     if (status == DIG_OK) {
         dig_trace_advise(w, trace);

@@ -66,10 +66,9 @@ struct dig_trace {
     struct dig_error_range   before, after; // on the holdout digs
     size_t                   holdouts;
 
-    size_t                   digs;
-    struct dig_trace_curves *curves;      // [digs], in the campaign's order; malloc'ed
-    struct dig_residuals    *residuals;   // dig by dig; malloc'ed; NULL: not worked out
-    char                     advice[512]; // which dig or table would tell more, for people
+    struct dig_judged     judged;      // the digs, in the campaign's order; curves are malloc'ed
+    struct dig_residuals *residuals;   // dig by dig; malloc'ed; NULL: not worked out
+    char                  advice[512]; // which dig or table would tell more, for people
     char command[4096]; // shell lines that make that table: of who knows its files; "": none
 };
 
@@ -89,7 +88,8 @@ struct dig_trace_settings dig_trace_settings_default(void);
 /// curves' standard deviations do. effects may be NULL: only effects with a reduced form compete
 /// then. machine may be NULL: the digs were measured by a force sensor. measured[].machine is
 /// filled when an effect of the machine was found; of a dig at another depth that its path tells,
-/// value becomes that of the plain dig. Seconds of one core, 1.3 MB of stack. DIG_EINVAL: fewer
+/// value becomes that of the plain dig; they and the set must outlive the trace. Seconds of one
+/// core, 1.3 MB of stack. DIG_EINVAL: fewer
 /// than two fit or identify digs, a trajectory that the set lacks; *error says so. DIG_ENOMEM.
 /// Writes *trace on success only.
 DIG_MUST_CHECK enum dig_status dig_trace_run(const struct dig_curve_set *set, const char *table,

@@ -147,16 +147,6 @@ static double noise_of(const struct dig_trace_work *const w, const struct dig_fi
     return dig_response_surface_noise(w->surface, trajectory, fitted->number) + dig->added.noise;
 }
 
-static void add_approach(const struct dig_measured *const dig,
-                         double                           sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
-{
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            sd[c][k] = hypot(sd[c][k], dig->added.error[c][k]);
-        }
-    }
-}
-
 static void add_unlisted(const struct dig_model_unlisted *const unlisted, const size_t trajectory,
                          double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
@@ -171,34 +161,38 @@ static void add_unlisted(const struct dig_model_unlisted *const unlisted, const 
     }
 }
 
+// By the gravel of a fitted hypothesis, its effects in the mean alone.
+static void predict(const struct dig_trace_work *const w, const struct dig_fitted *const fitted,
+                    const struct dig_measured *const dig, struct dig_predicted *const p)
+{
+    dig_fitted_curve(w->soil, fitted, dig, p->value);
+    dig_judge_sd(w->surface, w->scatter, (size_t)dig->trajectory, fitted->number,
+                 noise_of(w, fitted, dig), p->sd);
+}
+
 void dig_trace_fill_curves(const struct dig_trace_work *const     w,
                            const struct dig_model_unlisted *const unlisted,
                            struct dig_trace_curves                curves[])
 {
-    const struct dig_fitted *const before = &w->before;
-    const struct dig_fitted *const after  = &w->search->chosen;
+    const struct dig_fitted *const chosen = &w->search->chosen;
     for (size_t i = 0; i < w->digs; i++) {
         const struct dig_measured *const dig        = &w->measured[i];
         const size_t                     trajectory = (size_t)dig->trajectory;
-        struct dig_trace_curves *const   c          = &curves[i];
-        dig_fitted_curve(w->soil, before, dig, c->before);
-        dig_judge_sd(w->surface, w->scatter, trajectory, before->number, noise_of(w, before, dig),
-                     c->before_sd);
-        dig_fitted_curve(w->soil, after, dig, c->after);
-        dig_judge_sd(w->surface, w->scatter, trajectory, after->number, noise_of(w, after, dig),
-                     c->after_sd);
+        struct dig_trace_curves *const   of         = &curves[i];
+        double                           plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        predict(w, &w->before, dig, &of->before);
+        predict(w, chosen, dig, &of->after);
         if (unlisted != NULL) {
-            add_unlisted(unlisted, trajectory, c->after);
+            add_unlisted(unlisted, trajectory, of->after.value);
         }
-        double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        dig_response_surface_curve(w->surface, trajectory, after->number, plain);
+        dig_response_surface_curve(w->surface, trajectory, chosen->number, plain);
         dig_judge_sd_of_dug((const double(*)[DIG_CURVE_POINTS])plain,
-                            (const double(*)[DIG_CURVE_POINTS])c->after, c->after_sd);
-        add_approach(dig, c->before_sd);
-        add_approach(dig, c->after_sd);
-        for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
+                            (const double(*)[DIG_CURVE_POINTS])of->after.value, of->after.sd);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-                c->after[channel][k] += dig->machine[channel][k];
+                of->before.sd[c][k] = hypot(of->before.sd[c][k], dig->added.error[c][k]);
+                of->after.sd[c][k]  = hypot(of->after.sd[c][k], dig->added.error[c][k]);
+                of->after.value[c][k] += dig->machine[c][k];
             }
         }
     }

@@ -98,9 +98,9 @@ static struct dig_trace_curves *make_curves(const double size)
     struct dig_trace_curves *const curves = calloc(1, sizeof *curves);
     assert_non_null(curves);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double at                         = (double)k / (DIG_CURVE_POINTS - 1);
-        curves->after[DIG_CHANNEL_MY_Nm][k]     = change_at(size, at);
-        curves->before_sd[DIG_CHANNEL_MY_Nm][k] = sigma_at(at);
+        const double at                           = (double)k / (DIG_CURVE_POINTS - 1);
+        curves->after.value[DIG_CHANNEL_MY_Nm][k] = change_at(size, at);
+        curves->before.sd[DIG_CHANNEL_MY_Nm][k]   = sigma_at(at);
     }
     return curves;
 }
@@ -114,10 +114,11 @@ TEST(the_chance_is_what_drawing_finds)
     for (size_t i = 0; i < sizeof size / sizeof size[0]; i++) {
         struct dig_trace_curves *const curves = make_curves(size[i]);
         struct dig_measured            part   = dig;
-        assert_close(dig_decision_chance_of_worse(world.set, drawn_from, 1, &dig, curves),
+        const struct dig_judged        judged = { world.set, 1, &part, curves };
+        assert_close(dig_decision_chance_of_worse(&judged, drawn_from),
                      fraction_worse(size[i], 1.0), 0.03);
         part.last = 0.4;
-        assert_close(dig_decision_chance_of_worse(world.set, drawn_from, 1, &part, curves),
+        assert_close(dig_decision_chance_of_worse(&judged, drawn_from),
                      fraction_worse(size[i], 0.4), 0.03);
         free(curves);
     }
@@ -126,7 +127,8 @@ TEST(the_chance_is_what_drawing_finds)
 TEST(no_change_is_as_good_as_any)
 {
     struct dig_trace_curves *const curves = make_curves(0.0);
-    assert_close(dig_decision_chance_of_worse(world.set, drawn_from, 1, &dig, curves), 0.5, 0.0);
+    const struct dig_judged        judged = { world.set, 1, &dig, curves };
+    assert_close(dig_decision_chance_of_worse(&judged, drawn_from), 0.5, 0.0);
     free(curves);
 }
 
@@ -140,17 +142,18 @@ TEST(what_counts_is_the_error_of_the_digs_fitted_to)
     for (size_t i = 0; i < 2; i++) {
         measured[i] = dig;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            measured[i].value[DIG_CHANNEL_MY_Nm][k] = 2.0;
-            curves[i].before[DIG_CHANNEL_MY_Nm][k]  = 1.5;
-            curves[i].after[DIG_CHANNEL_MY_Nm][k]   = i == 0 ? 1.9 : 3.0;
+            measured[i].value[DIG_CHANNEL_MY_Nm][k]      = 2.0;
+            curves[i].before.value[DIG_CHANNEL_MY_Nm][k] = 1.5;
+            curves[i].after.value[DIG_CHANNEL_MY_Nm][k]  = i == 0 ? 1.9 : 3.0;
         }
     }
-    const bool first[]  = { true, false };
-    const bool second[] = { false, true };
-    const bool both[]   = { true, true };
-    assert_true(dig_decision_brings_nearer(world.set, 2, measured, curves, first));
-    assert_false(dig_decision_brings_nearer(world.set, 2, measured, curves, second));
-    assert_false(dig_decision_brings_nearer(world.set, 2, measured, curves, both));
+    const struct dig_judged judged   = { world.set, 2, measured, curves };
+    const bool              first[]  = { true, false };
+    const bool              second[] = { false, true };
+    const bool              both[]   = { true, true };
+    assert_true(dig_decision_brings_nearer(&judged, first));
+    assert_false(dig_decision_brings_nearer(&judged, second));
+    assert_false(dig_decision_brings_nearer(&judged, both));
     free(curves);
     free(measured);
 }

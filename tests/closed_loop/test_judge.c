@@ -13,11 +13,11 @@ static void make(struct dig_measured measured[DIGS], struct dig_trace_curves cur
 {
     for (size_t i = 0; i < DIGS; i++) {
         measured[i] = (struct dig_measured){ .trajectory = MADE_ACTUAL, .last = 1.0 };
-        curves[i]   = (struct dig_trace_curves){ .before = { { 0.0 } } };
+        curves[i]   = (struct dig_trace_curves){ .before.value = { { 0.0 } } };
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-            measured[i].value[DIG_CHANNEL_MY_Nm][k]  = 1.0;
-            curves[i].after[DIG_CHANNEL_MY_Nm][k]    = 1.0 + off[i];
-            curves[i].after_sd[DIG_CHANNEL_MY_Nm][k] = 0.2;
+            measured[i].value[DIG_CHANNEL_MY_Nm][k]     = 1.0;
+            curves[i].after.value[DIG_CHANNEL_MY_Nm][k] = 1.0 + off[i];
+            curves[i].after.sd[DIG_CHANNEL_MY_Nm][k]    = 0.2;
         }
     }
 }
@@ -30,14 +30,15 @@ TEST(errors_pool_by_squares_over_the_digs_taken)
     struct dig_trace_curves  *c          = calloc(DIGS, sizeof *c);
     const double              off[DIGS]  = { 0.3, 0.4, 9.0 };
     const bool                take[DIGS] = { true, true, false };
+    const struct dig_judged   judged     = { set, DIGS, m, c };
     make(m, c, off);
-    const struct dig_error_range after  = dig_judge_error(set, DIGS, m, c, take, true, 1);
-    const struct dig_error_range before = dig_judge_error(set, DIGS, m, c, take, false, 1);
+    const struct dig_error_range after  = dig_judge_error(&judged, take, true, 1);
+    const struct dig_error_range before = dig_judge_error(&judged, take, false, 1);
     assert_close(after.value, sqrt((0.09 + 0.16) / 2.0), 1e-9);
     assert_close(before.value, 1.0, 1e-9); // predicted nothing
     assert_close(after.low, 0.3, 1e-9);    // a quarter of the draws holds the first dig only
     assert_close(after.high, 0.4, 1e-9);
-    assert_close(dig_judge_floor(set, DIGS, m, c, take), 0.2, 1e-9);
+    assert_close(dig_judge_floor(&judged, take), 0.2, 1e-9);
     free(c);
     free(m);
     made_table_destroy(set);
@@ -52,12 +53,13 @@ TEST(one_dig_has_no_interval_and_none_no_error)
     const double              off[DIGS]  = { 0.3, 0.4, 9.0 };
     const bool                one[DIGS]  = { false, true, false };
     const bool                none[DIGS] = { false, false, false };
+    const struct dig_judged   judged     = { set, DIGS, m, c };
     make(m, c, off);
-    const struct dig_error_range alone = dig_judge_error(set, DIGS, m, c, one, true, 1);
+    const struct dig_error_range alone = dig_judge_error(&judged, one, true, 1);
     assert_close(alone.low, 0.4, 1e-9);
     assert_close(alone.high, 0.4, 1e-9);
-    assert_true(isnan(dig_judge_error(set, DIGS, m, c, none, true, 1).value));
-    assert_true(isnan(dig_judge_floor(set, DIGS, m, c, none)));
+    assert_true(isnan(dig_judge_error(&judged, none, true, 1).value));
+    assert_true(isnan(dig_judge_floor(&judged, none)));
     free(c);
     free(m);
     made_table_destroy(set);

@@ -81,17 +81,14 @@ TEST(adding_the_effect_makes_the_holdout_better)
 TEST(what_is_left_is_told_dig_by_dig)
 {
     dig_campaign(1, DIG_EFFECT_COHESION, 0.8, 31);
-    (void)snprintf(measured[5].name, sizeof measured[5].name, "five.csv");
     bootstraps = 100;
     trace_campaign();
     bootstraps = 24;
     assert_int_equal(trace.effects, 1);
     const struct dig_residuals *const r = trace.residuals;
     assert_non_null(r);
-    assert_int_equal(r->digs, DIGS);
-    assert_string_equal(r->dig[5].name, "five.csv");
-    assert_string_equal(r->dig[5].trajectory, "actual");
-    assert_int_equal(r->dig[5].use, DIG_USE_HOLDOUT);
+    assert_int_equal(trace.judged.digs, DIGS);
+    assert_ptr_equal(trace.judged.measured, measured);
     double before = 0.0;
     double after  = 0.0;
     for (size_t i = 5; i < DIGS; i += 2) {
@@ -189,8 +186,8 @@ TEST(the_machines_share_is_the_machines)
     for (int a = 0; a < DIG_AXES; a++) {
         assert_close(shifted.gravel.value[a] / plain.gravel.value[a], 1.0, 0.05);
     }
-    const double moved = shifted.curves[5].after[DIG_CHANNEL_MY_Nm][100] -
-                         plain.curves[5].after[DIG_CHANNEL_MY_Nm][100];
+    const double moved = shifted.judged.curves[5].after.value[DIG_CHANNEL_MY_Nm][100] -
+                         plain.judged.curves[5].after.value[DIG_CHANNEL_MY_Nm][100];
     assert_close(moved, 0.3, 0.05);
     dig_trace_finish(&plain);
     dig_trace_finish(&shifted);
@@ -198,7 +195,7 @@ TEST(the_machines_share_is_the_machines)
 
 TEST(too_few_digs_are_refused_and_nothing_is_written)
 {
-    struct dig_trace none  = { .digs = 42 };
+    struct dig_trace none  = { .holdouts = 42 };
     struct dig_error error = { "" };
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 35);
     for (size_t i = 1; i < DIGS; i++) {
@@ -208,19 +205,19 @@ TEST(too_few_digs_are_refused_and_nothing_is_written)
     measured[1].use        = DIG_USE_FIT;
     measured[1].trajectory = 7;
     assert_int_equal(run(&none, &error), DIG_EINVAL);
-    assert_int_equal(none.digs, 42);
+    assert_int_equal(none.holdouts, 42);
 }
 
 TEST(another_scenes_effects_are_refused)
 {
-    struct dig_trace none  = { .digs = 42 };
+    struct dig_trace none  = { .holdouts = 42 };
     struct dig_error error = { "" };
     dig_campaign(0, DIG_EFFECT_LAYERING, 0.0, 36);
     world.effects->scene_hash[0] ^= 1;
     assert_int_equal(run(&none, &error), DIG_EINVAL);
     world.effects->scene_hash[0] ^= 1;
     assert_contains(error.text, "another scene");
-    assert_int_equal(none.digs, 42);
+    assert_int_equal(none.holdouts, 42);
 }
 
 // A dig held out decides nothing: another holdout, the same verdict and gravel.

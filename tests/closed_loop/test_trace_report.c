@@ -30,23 +30,24 @@ static void fill_digs(struct example *const e)
     for (size_t d = 0; d < DIGS; d++) {
         struct dig_measured *const m = &e->measured[d];
         (void)snprintf(m->name, sizeof m->name, "dig <%zu>.csv", d + 1);
-        m->order                       = d;
-        m->trajectory                  = d == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
-        m->use                         = (enum dig_use)d;
-        m->pass                        = d == 2 ? 2 : 1;
-        m->pace                        = 1.0;
-        m->first                       = 0.05;
-        m->last                        = 0.9;
+        m->order      = d;
+        m->trajectory = d == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        m->use        = (enum dig_use)d;
+        m->pass       = d == 2 ? 2 : 1;
+        m->pace       = 1.0;
+        m->taken_off  = d == 1 ? (struct dig_approach){ 1.25, 0.1 } : dig_approach_plain();
+        m->first      = 0.05;
+        m->last       = 0.9;
         m->measured[DIG_CHANNEL_MY_Nm] = true;
         m->measured[DIG_CHANNEL_FZ_N]  = d == 1;
         for (int k = 0; k < DIG_CURVE_POINTS; k++) {
             const struct dig_gravel gravel = { { 0.5, 0.5, 2500.0 } };
             const double            p      = (double)k / (DIG_CURVE_POINTS - 1);
             const double y = made_moment_Nm(&gravel, d == 0 ? MADE_SIMPLE_A : MADE_ACTUAL, p, 0.0);
-            m->value[DIG_CHANNEL_MY_Nm][k]              = y * (shrink[d] + 0.05 * sin(40.0 * p));
-            e->curves[d].before[DIG_CHANNEL_MY_Nm][k]   = 0.8 * y;
-            e->curves[d].after[DIG_CHANNEL_MY_Nm][k]    = y;
-            e->curves[d].after_sd[DIG_CHANNEL_MY_Nm][k] = 0.1 * y;
+            m->value[DIG_CHANNEL_MY_Nm][k] = y * (shrink[d] + 0.05 * sin(40.0 * p));
+            e->curves[d].before.value[DIG_CHANNEL_MY_Nm][k] = 0.8 * y;
+            e->curves[d].after.value[DIG_CHANNEL_MY_Nm][k]  = y;
+            e->curves[d].after.sd[DIG_CHANNEL_MY_Nm][k]     = 0.1 * y;
         }
     }
 }
@@ -56,12 +57,11 @@ static struct dig_residual left(const double rms)
     return (struct dig_residual){ rms, rms / 4.0, 5.0 * rms };
 }
 
-// Two digs: of the second, a holdout that was not lifted, the moment alone was measured.
+// Of all but the first, which were not lifted, the moment alone was measured.
 static void fill_residuals(struct dig_residuals *const r)
 {
     const struct dig_residual none = left((double)NAN);
-    r->digs                        = 2;
-    for (size_t i = 0; i < r->digs; i++) {
+    for (size_t i = 0; i < DIGS; i++) {
         struct dig_residuals_dig *const dig = &r->dig[i];
         for (int p = 0; p < DIG_TRACE_PHASES; p++) {
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
@@ -71,11 +71,6 @@ static void fill_residuals(struct dig_residuals *const r)
             }
         }
         dig->air_sigmas = i == 0 ? 2.5 : (double)NAN;
-        dig->use        = i == 0 ? DIG_USE_FIT : DIG_USE_HOLDOUT;
-        dig->pass       = (unsigned)i + 1;
-        dig->taken_off  = i == 1 ? (struct dig_approach){ 1.25, 0.1 } : dig_approach_plain();
-        (void)snprintf(dig->name, sizeof dig->name, "dig <%zu>.csv", i + 1);
-        (void)snprintf(dig->trajectory, sizeof dig->trajectory, "simpleA");
     }
     r->known[DIG_CHANNEL_MY_Nm] = true;
     for (int s = 0; s < DIG_REGRESSORS; s++) {
@@ -147,8 +142,6 @@ static struct example *make(void)
         .before        = { 0.31, 0.27, 0.36 },
         .after         = { 0.14, 0.12, 0.17 },
         .holdouts      = 2,
-        .digs          = DIGS,
-        .curves        = e->curves,
         .command       = "cat >g.yaml <<'END'\npoints: []\nEND\n",
         .residuals     = &e->residuals,
         .advice        = "dig \"simpleB\" & see <again>",
@@ -156,13 +149,8 @@ static struct example *make(void)
     (void)snprintf(e->unlisted.depends_on, sizeof e->unlisted.depends_on, "speed and depth");
     const struct made_options options = { .relative_sd = 0.1, .packings = 3 };
     e->set                            = made_table(&options);
-    e->subject                        = (struct dig_trace_subject){
-                               .campaign = "pit <7>",
-                               .table    = "rig.sqlite",
-                               .set      = e->set,
-                               .digs     = DIGS,
-                               .measured = e->measured,
-    };
+    e->trace.judged                   = (struct dig_judged){ e->set, DIGS, e->measured, e->curves };
+    e->subject = (struct dig_trace_subject){ .campaign = "pit <7>", .table = "rig.sqlite" };
     fill_digs(e);
     fill_residuals(&e->residuals);
     return e;
@@ -335,8 +323,8 @@ TEST(effects_are_told_by_what_people_know_of_them)
         text, "layer: its top 0.04 m above the floor (rig scale), resists 0.62 times as hard");
     assert_contains(text, "\"meaning\": \"layer: its top 0.04 m");
     free(text);
-    e->trace.digs    = 0;
-    char *const page = page_of(e);
+    e->trace.judged.digs = 0;
+    char *const page     = page_of(e);
     assert_contains(page,
                     "<p>layer: its top 0.04 m above the floor (rig scale), resists 0.62 times");
     free(page);
@@ -350,7 +338,7 @@ TEST(what_is_named_and_not_applied_is_told)
     char                 *text = NULL;
     FILE *const           to   = written_begin(&text);
     e->trace.applied           = false;
-    e->trace.digs              = 0;
+    e->trace.judged.digs       = 0;
     dig_trace_text(&e->trace, to);
     written_end(to);
     assert_contains(text, "named, not applied: cylinder_friction, unlisted;");
@@ -404,10 +392,10 @@ TEST(the_page_stands_alone_and_draws_every_dig)
     assert_contains(page, "<pre>cat &gt;g.yaml &lt;&lt;&#39;END&#39;\npoints: []\nEND\n</pre>");
     // Each dig's moment, one dig's force, and the residual over path and depth.
     assert_int_equal(count_of(page, "<svg"), DIGS + 1 + 2);
-    assert_contains(page, "actual, fit, Fz");
+    assert_contains(page, "actual, fit, depth 1.25, attack 5.7 deg taken off, Fz");
     assert_contains(
-        page,
-        "<th>dig &lt;1&gt;.csv<br><span class=muted>fit</span></th><td>moment</td><td>2.5</td>");
+        page, "<th>dig &lt;1&gt;.csv<br><span class=muted>identify</span></th><td>moment</td><td>"
+              "2.5</td>");
     assert_contains(page, "it is not white");
     assert_contains(page, "<tr><th>speed</th><td>0.38</td><td>0.002</td></tr>");
     assert_contains(page, "<tr><th>pass</th><td>–</td><td>–</td></tr>");
@@ -433,7 +421,7 @@ TEST(a_trace_without_holdout_or_findings_has_a_page_too)
     e->trace.candidates     = 0;
     e->trace.sets           = 0;
     e->trace.tells          = 0;
-    e->trace.digs           = 0;
+    e->trace.judged.digs    = 0;
     e->trace.residuals      = NULL;
     e->trace.before.value   = (double)NAN;
     e->trace.advice[0]      = '\0';

@@ -98,7 +98,7 @@ static enum dig_status save_model(const struct digloop_job *const job, const cha
         struct dig_model_effect *const to =
             trace->applied ? &model->effect[e] : &model->left_out[e];
         *to = trace->effect[e];
-        count_digs(trace->digs, to);
+        count_digs(trace->judged.digs, to);
     }
     model->unlisted              = trace->applied ? trace->unlisted : NULL; // the trace keeps it
     const enum dig_status status = dig_model_save(job->options->add, model, error);
@@ -123,9 +123,6 @@ static enum dig_status write_results(const struct digloop_job *const job, const 
             .campaign = options->recording[0],
             .table    = options->table,
             .lambda   = campaign->lambda,
-            .set      = job->set,
-            .digs     = campaign->digs,
-            .measured = campaign->measured,
         };
         status = dig_out_end(&out, dig_trace_html(trace, &subject, out.file, error), error);
     }
