@@ -142,21 +142,8 @@ static void fill_errors(const struct dig_trace_work *const w, struct dig_trace *
     trace->noise_floor = dig_judge_floor(&trace->judged, any ? w->holdout : w->fit);
 }
 
-// Where nothing better is to be said: why a probability stops at one half.
-static void advise_on_size(const struct dig_trace_work *const w, struct dig_trace *const trace)
-{
-    for (size_t e = 0; e < w->air->effects && trace->advice[0] == '\0'; e++) {
-        if (w->size[e] < 1.0) {
-            (void)snprintf(trace->advice, sizeof trace->advice,
-                           "%s shows in %s; in the soil a gravel of the table leaves %.1f of "
-                           "the noise floor of it, so the digs themselves do not confirm it",
-                           dig_effect_name(w->air->effect[e].effect),
-                           w->air->by_digs ? "the forces of the digs" : "free air", w->size[e]);
-        }
-    }
-}
-
-static enum dig_status report(const struct dig_trace_work *const w, struct dig_trace *const trace)
+static enum dig_status report(const struct dig_trace_work *const w, struct dig_trace *const trace,
+                              struct dig_error *const error)
 {
     trace->judged =
         (struct dig_judged){ .set      = w->set,
@@ -179,12 +166,7 @@ static enum dig_status report(const struct dig_trace_work *const w, struct dig_t
     fill_errors(w, trace);
     dig_residuals_make(w, trace->judged.curves, trace->residuals);
     status = dig_tell_apart(w, trace);
-    if (status == DIG_OK) {
-        dig_trace_advise(w, trace);
-        advise_on_size(w, trace);
-        dig_trace_advise_on_air(w, trace);
-    }
-    return status;
+    return status == DIG_OK ? dig_trace_explain(w, trace, error) : status;
 }
 
 // Whether ground that depends on the rate feels the speed of the tooth or the pace of the dig: what
@@ -308,8 +290,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     if (w->air->effects == 0 && !w->search->significant && !is_as_filed(w)) {
         w->search->chosen = w->before;
     }
-    status = dig_trace_ground(w, &trace->ground, error);
-    return status == DIG_OK ? report(w, trace) : status;
+    return report(w, trace, error);
 }
 
 // What a trace works in, but for what has its size from the table.

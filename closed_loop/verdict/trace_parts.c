@@ -3,7 +3,6 @@
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/accuracy/score.h"
 #include "closed_loop/recordings/regressors.h"
-#include "closed_loop/verdict/tell_apart.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -237,35 +236,5 @@ void dig_trace_fill_candidates(const struct dig_trace_work *const w, struct dig_
                                     .p_fit        = rival->p_fit,
                                     .error        = fit_error(w, f),
                                     .seen_in      = dig_trace_seen_in(w, f, 0) };
-    }
-}
-
-void dig_trace_advise(const struct dig_trace_work *const w, struct dig_trace *const trace)
-{
-    const struct dig_search *const s = w->search;
-    if (s->outside) {
-        const struct dig_gravel g = dig_response_surface_gravel(w->surface, s->chosen.number);
-        (void)snprintf(trace->advice, sizeof trace->advice,
-                       "no effect: the gravel lies beyond the table's grid, near friction %.2f, "
-                       "rolling %.2f, %.0f kg/m3; compute a table that holds it",
-                       g.value[DIG_AXIS_FRICTION], g.value[DIG_AXIS_ROLLING],
-                       g.value[DIG_AXIS_DENSITY_kgpm3]);
-    } else if (s->is_rock) {
-        (void)snprintf(trace->advice, sizeof trace->advice,
-                       "a rock, felt %.0f mm (rig scale) from where the table's is; what it adds "
-                       "is corrected as measured, and holds while it lies there",
-                       1e3 * s->rock.ahead_m);
-    } else if (s->unlisted) {
-        (void)snprintf(trace->advice, sizeof trace->advice,
-                       "no effect of the list explains the digs; what is left depends on %s",
-                       s->without_name.depends_on[0] != '\0' ? s->without_name.depends_on
-                                                             : "nothing that was tried");
-    } else if (trace->tells > 0 && trace->tell[0].how[0] != '\0') {
-        dig_tell_apart_say(&trace->tell[0], sizeof trace->advice, trace->advice);
-    } else if (s->significant && s->chosen.hypothesis.effects > 0 &&
-               dig_effect_of(s->chosen.hypothesis.effect[0])->templated) {
-        (void)snprintf(trace->advice, sizeof trace->advice,
-                       "a table computed with %s in its beds would serve better than a correction",
-                       dig_effect_name(s->chosen.hypothesis.effect[0]));
     }
 }

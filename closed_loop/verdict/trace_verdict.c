@@ -1,5 +1,6 @@
 #include "closed_loop/verdict/trace_work.h"
 
+#include "closed_loop/search/cross_validation.h"
 #include "closed_loop/search/unlisted.h"
 
 #include <assert.h>
@@ -39,6 +40,29 @@ void dig_trace_doubt_soil(struct dig_trace_work *const w)
         search->unlisted      = true;
         search->is_rock       = false;
         search->alike.effects = 0;
+    }
+}
+
+// A correction without a name was tried on the digs of each trajectory in turn
+// (closed_loop/search/unlisted.h): that says nothing where every trajectory was dug once.
+static bool was_tried(const struct dig_whitened_digs *const batch)
+{
+    bool tried = false;
+    for (size_t g = 0; g < batch->groups; g++) {
+        tried = tried || batch->group[g].digs > 1;
+    }
+    return tried;
+}
+
+void dig_trace_confirm_without_air(struct dig_trace_work *const w)
+{
+    assert(w != NULL);
+    const struct dig_search *const s = w->search;
+    w->confirmed                     = true;
+    if (w->air->no_air && s->significant) {
+        w->confirmed = s->unlisted
+                           ? was_tried(w->batch)
+                           : dig_cross_validation_gain(w->batch, &s->plain, &s->chosen) > 0.0;
     }
 }
 

@@ -101,13 +101,6 @@ void dig_trace_confirm_without_air(struct dig_trace_work *w);
 /// explains: it may be the machine's.
 void dig_trace_doubt_soil(struct dig_trace_work *w);
 
-/// What the effects found are explained in to people: the gravel the search chose, the table's
-/// bucket (without a table as rough as the gravel), and how hard the layers that tables of effects
-/// hold resist beside the gravel. Opens the table. DIG_ENOMEM; fails as dig_table_scene().
-DIG_MUST_CHECK enum dig_status dig_trace_ground(const struct dig_trace_work *w,
-                                                struct dig_effect_ground    *ground,
-                                                struct dig_error            *error);
-
 /// Fills effects (the machine's first), where each is seen, the sets that cannot be told apart and
 /// what is added to the prediction for an effect without a name: nothing where free air shows a
 /// machine that no effect explains, because it may do otherwise to the next dig. Probabilities
@@ -139,10 +132,9 @@ void dig_trace_fill_residuals(const struct dig_trace_work *w, double residual[DI
 /// The single effects, best first.
 void dig_trace_fill_candidates(const struct dig_trace_work *w, struct dig_trace *trace);
 
-/// What to do next, for people.
-void dig_trace_advise(const struct dig_trace_work *w, struct dig_trace *trace);
-
-/// Says first that the recordings hold no free air, where they do not.
-void dig_trace_advise_on_air(const struct dig_trace_work *w, struct dig_trace *trace);
+/// For people, after all else: what to do next, and the ground that effects are explained in. Opens
+/// the table. DIG_ENOMEM; fails as dig_table_scene().
+DIG_MUST_CHECK enum dig_status dig_trace_explain(const struct dig_trace_work *w,
+                                                 struct dig_trace *trace, struct dig_error *error);
 
 #endif // DIG_CLOSED_LOOP_VERDICT_TRACE_WORK_H

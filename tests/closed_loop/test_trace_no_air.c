@@ -1,4 +1,4 @@
-// Tests for closed_loop/verdict/trace_no_air.c
+// Tests for a campaign without free air: closed_loop/verdict/trace_verdict.c, trace_advice.c
 
 #include "closed_loop/verdict/trace_work.h"
 #include "tests/closed_loop/world_fixture.h"
@@ -30,7 +30,9 @@ static struct dig_trace_work work(const size_t digs)
     search.plain       = fit_plain(&batch);
     dig_hypothesis_fit(&batch, &layer, middle, DIG_FIT_THOROUGH, &search.chosen);
     air = (struct dig_machine_finding){ .p_complete = 1.0, .no_air = true };
-    return (struct dig_trace_work){ .soil = soil, .batch = &batch, .search = &search, .air = &air };
+    return (struct dig_trace_work){
+        .surface = world.surface, .soil = soil, .batch = &batch, .search = &search, .air = &air
+    };
 }
 
 static bool is_confirmed(struct dig_trace_work *const w)
@@ -68,17 +70,13 @@ TEST(without_a_name_a_second_dig_of_a_trajectory_is_asked_for)
 TEST(the_advice_begins_with_the_air_that_is_missing)
 {
     const struct dig_trace_work w     = work(2);
-    struct dig_trace            trace = { .advice = "a table would serve" };
-    dig_trace_advise_on_air(&w, &trace);
+    struct dig_trace            trace = { .advice = "" };
+    assert_int_equal(dig_trace_explain(&w, &trace, NULL), DIG_OK);
     assert_memory_equal(trace.advice, "no free air in the recordings: effects of the machine", 53);
-    assert_non_null(strstr(trace.advice, "Of the digs alone: a table would serve"));
-    memset(trace.advice, 'x', sizeof trace.advice - 1);
-    dig_trace_advise_on_air(&w, &trace);
-    assert_true(strlen(trace.advice) < sizeof trace.advice);
-    (void)snprintf(trace.advice, sizeof trace.advice, "as it was");
+    assert_non_null(strstr(trace.advice, "Of the digs alone: a table computed with layering"));
     air.no_air = false;
-    dig_trace_advise_on_air(&w, &trace);
-    assert_string_equal(trace.advice, "as it was");
+    assert_int_equal(dig_trace_explain(&w, &trace, NULL), DIG_OK);
+    assert_memory_equal(trace.advice, "a table computed with layering", 30);
 }
 
 TESTS_WITH(world_setup, world_teardown)
