@@ -26,7 +26,7 @@ no second effect|closed_loop/search/search_which.c|s/if (find_pair(c, &pair))/if
 no gravel outside the grid|closed_loop/search/search.c|s/search->outside = !search->is_rock/search->outside = false \&\& !search->is_rock/|25
 what nothing explains is never chance|closed_loop/search/search.c|s/rarer = 0.01/rarer = 1e9/|8
 digs do not widen their scatter|closed_loop/search/search.c|s/statistic->about) < c->false_alarm/statistic->about) < -1.0/|40
-evidence is not tempered (.5: 1)|closed_loop/search/search_odds.c|s/temper = 0.5/temper = 1.0/|0
+evidence is not tempered (.5: 1)|closed_loop/search/search.c|s/temper = 0.5/temper = 1.0/|0
 size does not halve a probability|closed_loop/verdict/trace_work.h|s/UNCONFIRMED 0.5/UNCONFIRMED 1.0/|40
 every correction is made|closed_loop/verdict/trace.c|s/most_chance_of_worse = 0.2/most_chance_of_worse = 1.0/|88
 repeats count as beds|closed_loop/fit/same_bed.c|s/return beds;/return batch->group[group].digs;/|54

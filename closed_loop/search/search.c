@@ -15,6 +15,9 @@ static const double rarer = 0.01;
 // Log evidence beyond which digs that differ as an effect says are not put down to scatter.
 static const double lead = 3.0;
 
+// Evidence is tempered: covariance and templates are known from a few packings only.
+static const double temper = 0.5;
+
 size_t dig_search_rivals(const struct dig_whitened_digs *const batch,
                          struct dig_hypothesis                 single[DIG_RIVALS_MAX])
 {
@@ -153,6 +156,56 @@ static void bootstrap(struct dig_search_work *const c, const size_t times)
     }
 }
 
+// Whether a gravel that the grid does not hold explains the digs at least as well as what was
+// chosen.
+static bool is_outside(const struct dig_search_work *const c)
+{
+    const struct dig_fitted *const chosen    = &c->s->chosen;
+    const double                   by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
+    const double                   by_effect =
+        c->s->unlisted ? dig_search_best_evidence(c->s) : dig_search_evidence(c, chosen, 0);
+    return by_gravel > 0.0 && by_gravel >= by_effect &&
+           by_gravel >= dig_search_evidence(c, &c->s->nameless, 0);
+}
+
+// The two best single effects that the digs cannot tell from the one chosen.
+static void find_alike(struct dig_search_work *const c)
+{
+    enum { MOST = 3 };
+    struct dig_candidate_set *const alike    = &c->s->alike;
+    const double                    evidence = dig_search_evidence(c, &c->s->chosen, 0);
+    const double                    least    = fmax(evidence - DIG_SEARCH_TOLD_APART, 0.0);
+    alike->effect[0]                         = c->s->chosen.hypothesis.effect[0];
+    alike->effects                           = 1;
+    for (size_t i = 0; i < c->s->rivals && alike->effects < MOST; i++) {
+        const enum dig_effect_id effect = c->single[i].effect[0];
+        if (c->s->rival[i].log_evidence > least && effect != alike->effect[0]) {
+            alike->effect[alike->effects++] = effect;
+        }
+    }
+    alike->effects = alike->effects > 1 ? alike->effects : 0;
+}
+
+// The weight of each answer among all that were tried, by tempered Bayes.
+static void set_probabilities(struct dig_search_work *const c)
+{
+    const struct dig_fitted *const chosen    = &c->s->chosen;
+    const double                   evidence  = dig_search_evidence(c, chosen, 0);
+    const bool                     single    = chosen->hypothesis.effects == 1;
+    const double                   by_gravel = dig_search_evidence(c, &c->s->beyond, 1);
+    for (size_t e = 0; e < chosen->hypothesis.effects; e++) {
+        double with    = 1.0;
+        double without = exp(-temper * evidence) + exp(temper * (by_gravel - evidence));
+        for (size_t i = 0; i < c->s->rivals; i++) {
+            const double weight = exp(temper * (c->s->rival[i].log_evidence - evidence));
+            const bool   same   = c->single[i].effect[0] == chosen->hypothesis.effect[e];
+            with += same && !single ? weight : 0.0;
+            without += same ? 0.0 : weight;
+        }
+        c->s->probability[e] = with / (with + without);
+    }
+}
+
 void dig_search_run(struct dig_whitened_digs *const batch, const double false_alarm,
                     const size_t draws, const uint64_t seed, struct dig_search *const search)
 {
@@ -170,7 +223,7 @@ void dig_search_run(struct dig_whitened_digs *const batch, const double false_al
     }
     bootstrap(&c, draws / 4);
     dig_search_which(&c);
-    search->outside = !search->is_rock && dig_search_is_outside(&c);
+    search->outside = !search->is_rock && is_outside(&c);
     if (search->unlisted && !search->is_rock && !search->outside &&
         !(search->without_name.log_evidence > 0.0) &&
         dig_search_best_evidence(search) < DIG_SEARCH_TOLD_APART &&
@@ -184,7 +237,7 @@ void dig_search_run(struct dig_whitened_digs *const batch, const double false_al
         search->unlisted = false;
     }
     if (search->chosen.hypothesis.effects == 1) {
-        dig_search_find_alike(&c);
+        find_alike(&c);
     }
-    dig_search_set_probabilities(&c);
+    set_probabilities(&c);
 }

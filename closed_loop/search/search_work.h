@@ -1,4 +1,4 @@
-// What the rooms of a search work on together. Internal to search.c, search_which.c, search_odds.c.
+// What the rooms of a search work on together. Internal to its sources.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H
 #define DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H
@@ -32,16 +32,6 @@ double dig_search_best_evidence(const struct dig_search *s);
 
 /// Chooses one effect, two, or none that has a name: s->chosen, s->unlisted.
 void dig_search_which(struct dig_search_work *c);
-
-/// True when a gravel that the grid does not hold explains the digs at least as well as what was
-/// chosen.
-bool dig_search_is_outside(const struct dig_search_work *c);
-
-/// Fills s->alike with the two best single effects that the digs cannot tell from the one chosen.
-void dig_search_find_alike(struct dig_search_work *c);
-
-/// Fills s->probability: the weight of each answer among all that were tried, by tempered Bayes.
-void dig_search_set_probabilities(struct dig_search_work *c);
 
 /// How many sigmas the parabola's own term is from nothing, of a fit that holds wear; of any other,
 /// or of fewer than five digs: 0. Microseconds.

@@ -3,6 +3,7 @@
 // hardly resists, it is rough along the dig, and no two digs have it alike: beds do not scatter so,
 // and no effect does. How likely the digs are tells it.
 
+#include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/trace_work.h"
 
 #include <math.h>
@@ -24,9 +25,8 @@ static enum dig_status set_noise(const struct dig_trace_work *const w, const dou
     return dig_trace_whiten(w, place);
 }
 
-// Misfit by which an effect must lead the plain gravel to have a say: two answers' log evidence
-// (search/search_work.h), twice.
-static const double told_apart = 12.0;
+// Misfit by which an effect must lead the plain gravel to have a say.
+static const double told_apart = 2.0 * DIG_SEARCH_TOLD_APART;
 
 // The misfit, with that noise, of what explains the digs best: a plain gravel, or one effect, or
 // what has no name, where that is told apart from it. Noise must not take from an effect what is
@@ -67,16 +67,6 @@ static struct dig_lasting noise_of(const struct dig_whitened_digs *const batch, 
     return noise;
 }
 
-// What one number more costs in any choice: noise's size. Its memory hardly tells by itself.
-static double cost(const struct dig_whitened_digs *const batch)
-{
-    double features = 0.0;
-    for (size_t g = 0; g < batch->groups; g++) {
-        features += (double)batch->group[g].features;
-    }
-    return log(features);
-}
-
 enum dig_status dig_trace_tell_noise(const struct dig_trace_work *const w,
                                      struct dig_fitted *const           plain)
 {
@@ -88,7 +78,8 @@ enum dig_status dig_trace_tell_noise(const struct dig_trace_work *const w,
     memcpy(start, plain->number, DIG_AXES * sizeof start[0]);
     memcpy(place, start, sizeof place);
     enum dig_status status = least_misfit(w, plain->number, &told, start, &best);
-    best -= cost(&without);
+    best -=
+        2.0 * dig_search_penalty(&without, 1); // noise's size; its memory hardly tells by itself
     for (size_t m = 0; m < sizeof memory_s / sizeof memory_s[0]; m++) {
         for (size_t i = 0; i < sizeof shares / sizeof shares[0] && status == DIG_OK; i++) {
             const struct dig_lasting noise = noise_of(&without, shares[i], memory_s[m]);
