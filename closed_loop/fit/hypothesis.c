@@ -1,6 +1,7 @@
 #include "closed_loop/fit/hypothesis.h"
 
 #include "closed_loop/fit/likelihood.h"
+#include "closed_loop/numeric/dense.h"
 #include "closed_loop/numeric/levenberg.h"
 #include "estimator/effects/effect.h"
 
@@ -56,9 +57,11 @@ static double misfit_at(struct dig_likelihood *const      likelihood,
     dig_likelihood_residual(likelihood, x, r);
     memcpy(f->number, x, l->unknowns * sizeof f->number[0]);
     f->misfit = dig_likelihood_misfit(likelihood, r, &f->squares);
+    f->means  = dig_product(likelihood->means, r, r);
     for (size_t k = 0; k < likelihood->steps; k++) {
-        f->z[k] =
-            likelihood->batch->steps->middle[k] + r[likelihood->residuals - likelihood->steps + k];
+        const double off = r[likelihood->residuals - likelihood->steps + k];
+        f->z[k]          = likelihood->batch->steps->middle[k] + off;
+        f->means += off * off;
     }
     for (size_t g = 0; g < likelihood->batch->groups; g++) {
         f->noise[g] = likelihood->error[g].noise;
@@ -170,15 +173,6 @@ void dig_hypothesis_errors(const struct dig_whitened_digs *const batch,
     dig_likelihood_init(&likelihood, batch, &fitted->hypothesis);
     dig_likelihood_weigh(&likelihood, fitted->number);
     memcpy(error, likelihood.error, batch->groups * sizeof error[0]);
-}
-
-double dig_hypothesis_squares(const struct dig_whitened_digs *const batch,
-                              const struct dig_fitted *const        fitted)
-{
-    struct dig_likelihood likelihood;
-    dig_likelihood_init(&likelihood, batch, &fitted->hypothesis);
-    dig_likelihood_weigh(&likelihood, fitted->number);
-    return dig_likelihood_means(&likelihood, fitted->number);
 }
 
 void dig_fitted_features(const struct dig_soil *const soil, const struct dig_fitted *const fitted,

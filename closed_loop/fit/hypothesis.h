@@ -16,6 +16,7 @@ struct dig_fitted {
     double                noise[DIG_TRAJECTORY_MAX]; // of a group's mean beyond 1/n, by group
     double                misfit;                    // closed_loop/fit/likelihood.h
     double                squares;                   // of it, what is not a logarithm
+    double                means;                     // of that, the means' and z's
     double                z[DIG_STEPS_MAX];          // of the batch's steps
 };
 
@@ -52,9 +53,5 @@ void dig_hypothesis_bounds(const struct dig_soil *soil, const struct dig_hypothe
 /// What the groups' means are uncertain by, at a fit.
 void dig_hypothesis_errors(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
                            struct dig_common_error error[]);
-
-/// Squares of the means' misfit of a fitted hypothesis (and of z).
-double dig_hypothesis_squares(const struct dig_whitened_digs *batch,
-                              const struct dig_fitted        *fitted);
 
 #endif // DIG_CLOSED_LOOP_FIT_HYPOTHESIS_H

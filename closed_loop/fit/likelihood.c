@@ -40,7 +40,9 @@ void dig_likelihood_init(struct dig_likelihood *const          l,
     l->differs    = dig_hypothesis_differs(hypothesis);
     l->steps      = batch->steps != NULL ? batch->steps->steps : 0;
     l->residuals  = l->steps;
+    l->means      = 0;
     for (size_t g = 0; g < batch->groups; g++) {
+        l->means += batch->group[g].features;
         l->residuals += batch->group[g].features * (1 + (l->differs ? batch->group[g].digs : 0));
     }
     for (size_t i = 0; i < DIG_HYPOTHESIS_NUMBERS; i++) {
@@ -127,27 +129,25 @@ static void take_off_steps(const struct dig_likelihood *const l, double mean[], 
     }
 }
 
-// Whitened residuals of the means, how many.
-static size_t residual_of_means(const struct dig_likelihood *const l, double r[])
+// Whitened residuals of the means.
+static void residual_of_means(const struct dig_likelihood *const l, double r[])
 {
-    size_t n = 0;
-    for (size_t g = 0; g < l->batch->groups; g++) {
+    for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
         const struct dig_whitened_digs_group *const group = &l->batch->group[g];
         for (size_t k = 0; k < group->features; k++) {
-            r[n + k] = group->mean[k] - l->mean[g][k];
+            r[k] = group->mean[k] - l->mean[g][k];
         }
-        (void)dig_common_error_squares(group, &l->error[g], r + n);
-        n += group->features;
+        (void)dig_common_error_squares(group, &l->error[g], r);
     }
-    return n;
 }
 
 void dig_likelihood_residual(void *const context, const double x[], double r[])
 {
     struct dig_likelihood *const l = context;
     model_at(l, x);
-    size_t n = residual_of_means(l, r);
+    residual_of_means(l, r);
     take_off_steps(l, r, r + l->residuals - l->steps);
+    size_t n = l->means;
     for (size_t i = 0; l->differs && i < l->batch->digs; i++) {
         const size_t                                g     = l->batch->dig[i].group;
         const struct dig_whitened_digs_group *const group = &l->batch->group[g];
@@ -247,17 +247,4 @@ double dig_likelihood_misfit(const struct dig_likelihood *const l, const double 
         logs += l->error[g].log_det;
     }
     return dig_whitened_digs_misfit(l->batch, *squares) + logs;
-}
-
-double dig_likelihood_means(struct dig_likelihood *const l, const double x[])
-{
-    double r[DIG_TRAJECTORY_MAX * DIG_FEATURES + DIG_STEPS_MAX];
-    double sum = 0.0;
-    model_at(l, x);
-    const size_t n = residual_of_means(l, r);
-    take_off_steps(l, r, r + n);
-    for (size_t i = 0; i < n + l->steps; i++) {
-        sum += r[i] * r[i];
-    }
-    return sum;
 }

@@ -25,6 +25,7 @@ struct dig_likelihood {
     const struct dig_hypothesis    *hypothesis; // not owned
     size_t                          numbers;    // of the hypothesis
     size_t                          residuals;
+    size_t                          means; // of the residuals, those of the means, which come first
     bool                            differs; // from dig to dig of a trajectory
 
     double           place[DIG_AXES]; // of which plain is
@@ -58,8 +59,5 @@ void dig_likelihood_residual(void *context, const double x[], double r[]);
 /// The misfit of residuals so long; *squares: of it, what is not a logarithm.
 double dig_likelihood_misfit(const struct dig_likelihood *l, const double residual[],
                              double *squares);
-
-/// Squares of the means' misfit at x and of z - middle, by the covariance that was taken.
-double dig_likelihood_means(struct dig_likelihood *l, const double x[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H

@@ -13,7 +13,7 @@ double dig_null_simulation_left(const struct dig_whitened_digs *const batch,
                                 const struct dig_fitted *const        fitted)
 {
     const double squares = dig_hypothesis_differs(&fitted->hypothesis)
-                               ? dig_hypothesis_squares(batch, fitted)
+                               ? fitted->means
                                : fitted->squares - dig_whitened_digs_about(batch);
     return dig_whitened_digs_misfit_of_means(batch, squares);
 }

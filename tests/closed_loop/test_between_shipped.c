@@ -3,6 +3,7 @@
 
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/fit/posterior.h"
+#include "closed_loop/numeric/dense.h"
 #include "tests/closed_loop/shipped_fixture.h"
 
 #include <string.h>
@@ -55,6 +56,7 @@ TEST(intervals_hold_between_the_grids_points)
 {
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
+    static double                   residual[DIG_LIKELIHOOD_RESIDUALS];
     static const double             middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     double                          log_likelihood                 = 0.0;
     int                             held                           = 0;
@@ -68,7 +70,8 @@ TEST(intervals_hold_between_the_grids_points)
         make_batch(e, place, &batch);
         dig_likelihood_init(&likelihood, &batch, &plain);
         dig_likelihood_weigh(&likelihood, place);
-        log_likelihood -= 0.5 * dig_likelihood_means(&likelihood, place);
+        dig_likelihood_residual(&likelihood, place, residual);
+        log_likelihood -= 0.5 * dig_product(likelihood.means, residual, residual);
         for (size_t g = 0; g < batch.groups; g++) {
             log_likelihood -= 0.5 * likelihood.error[g].log_det;
         }

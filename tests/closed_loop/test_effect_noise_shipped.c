@@ -4,6 +4,7 @@
 
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/fit/posterior.h"
+#include "closed_loop/numeric/dense.h"
 #include "closed_loop/search/null_simulation.h"
 #include "tests/closed_loop/shipped_fixture.h"
 
@@ -62,6 +63,7 @@ TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
 {
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
+    static double                   residual[DIG_LIKELIHOOD_RESIDUALS];
     double                          squares[DIG_EFFECTS] = { 0.0 }, of[DIG_EFFECTS] = { 0.0 };
     double                          all = 0.0, features = 0.0, misfit = 0.0;
     for (size_t i = 0; i < dug->entries; i++) {
@@ -76,7 +78,8 @@ TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
         x[DIG_AT_CONTRAST(0)] = 1.0;
         dig_likelihood_init(&likelihood, &batch, &hypothesis);
         dig_likelihood_weigh(&likelihood, x);
-        const double means = dig_likelihood_means(&likelihood, x);
+        dig_likelihood_residual(&likelihood, x, residual);
+        const double means = dig_product(likelihood.means, residual, residual);
         misfit += means;
         squares[e->effect] += means;
         all += means;

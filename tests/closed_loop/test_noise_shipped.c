@@ -4,6 +4,7 @@
 
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/fit/posterior.h"
+#include "closed_loop/numeric/dense.h"
 #include "closed_loop/recordings/observe.h"
 #include "tests/closed_loop/shipped_fixture.h"
 #include "tests/read.h"
@@ -89,13 +90,15 @@ TEST(what_the_digs_leave_of_the_table_is_as_large_as_expected)
 {
     static struct dig_whitened_digs batch;
     static struct dig_likelihood    likelihood;
+    static double                   residual[DIG_LIKELIHOOD_RESIDUALS];
     double means = 0.0, features = 0.0, about = 0.0, freedom = 0.0, misfit = 0.0;
     for (size_t i = 0; i < grounds; i++) {
         double place[DIG_AXES];
         make_batch(&ground[i], place, &batch);
         dig_likelihood_init(&likelihood, &batch, &plain);
         dig_likelihood_weigh(&likelihood, place);
-        const double of_means = dig_likelihood_means(&likelihood, place);
+        dig_likelihood_residual(&likelihood, place, residual);
+        const double of_means = dig_product(likelihood.means, residual, residual);
         means += of_means;
         misfit += of_means;
         for (size_t g = 0; g < batch.groups; g++) {
