@@ -166,10 +166,7 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
     }
     error->noise = error->even + trace;
     add_as_gravels(group, &error->shift, covariance);
-    // Positive definite by what is on its diagonal.
-    const enum dig_status status = dig_cholesky(n, covariance);
-    assert(status == DIG_OK);
-    (void)status;
+    dig_cholesky_sure(n, covariance); // by what is on its diagonal
     error->log_det = dig_lower_log_det(n, covariance);
     dig_lower_invert(n, covariance, error->inverse);
 }
@@ -223,9 +220,7 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
             factor[a] = dig_chance_normal(seed);
             fill_likeness(&r, a, &lower[a * DIG_FEATURES]);
         }
-        const enum dig_status status = dig_cholesky(DIG_FEATURES, lower);
-        assert(status == DIG_OK);
-        (void)status;
+        dig_cholesky_sure(DIG_FEATURES, lower);
         dig_lower_multiply(DIG_FEATURES, lower, factor);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             feature[f] += error->size[p][f] * factor[f];

@@ -223,14 +223,10 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                                            .log_evidence = solved.log_evidence };
     list_numbers(&s->fit.lines, effects, effect, &numbers);
     for (size_t e = 0; e < effects; e++) {
-        const struct dig_effect *const of = dig_effect_of(effect[e].effect);
+        const struct dig_model_effect now = effect_of(s, effect[e].effect, 0.0);
         answer->effect[e]                 = effect[e];
-        for (size_t i = 0; i < of->parameters; i++, n++) {
-            const struct dig_effect_parameter *const parameter = &of->parameter[i];
-
-            const double value =
-                parameter->absent + parameter->scale * s->fit.at[numbers.column[n]];
-            answer->value[n] = fmin(fmax(value, parameter->low), parameter->high);
+        for (size_t i = 0; i < now.parameters; i++) {
+            answer->value[n++] = now.parameter[i].value;
         }
     }
     dig_lines_file(&s->fit.lines, s->fit.at, answer->file);

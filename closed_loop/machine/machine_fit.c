@@ -135,7 +135,7 @@ static void move_to_absent(struct dig_fit *const fit)
     for (size_t a = 0; a < n; a++) {
         more[a] = 0.0;
         for (size_t b = 0; b < n; b++) {
-            more[a] += fit->slope2[a * n + b] * back[b];
+            more[a] += fit->slope2[a > b ? a * n + b : b * n + a] * back[b];
         }
         fit->rest2 += back[a] * (2.0 * fit->slope_rest[a] + more[a]);
     }

@@ -258,13 +258,6 @@ static void sum_up(struct dig_lines *const lines, double rest[], double slope[])
             }
         }
     }
-    for (size_t d = 0; d < lines->digs; d++) {
-        for (size_t a = 0; a < n; a++) {
-            for (size_t b = 0; b < a; b++) {
-                lines->normal[d].slope2[b * n + a] = lines->normal[d].slope2[a * n + b];
-            }
-        }
-    }
 }
 
 void dig_lines_update(struct dig_lines *const lines, const unsigned set)

@@ -38,7 +38,7 @@ struct dig_lines_normal {
     size_t  rows;
     double  rest2;
     double *slope_rest; // [columns]
-    double *slope2;     // [columns * columns]
+    double *slope2;     // [columns * columns], the lower triangle
 };
 
 /// Free with dig_lines_finish().

@@ -48,6 +48,13 @@ DIG_VECTORS enum dig_status dig_cholesky(const size_t n, double a[])
     return DIG_OK;
 }
 
+void dig_cholesky_sure(const size_t n, double a[])
+{
+    const enum dig_status status = dig_cholesky(n, a);
+    assert(status == DIG_OK);
+    (void)status;
+}
+
 DIG_VECTORS void dig_lower_solve(const size_t n, const double l[], double b[])
 {
     for (size_t i = 0; i < n; i++) {

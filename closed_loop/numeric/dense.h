@@ -16,6 +16,9 @@ double dig_product(size_t n, const double a[], const double b[]);
 /// unspecified. O(n^3 / 3).
 DIG_MUST_CHECK enum dig_status dig_cholesky(size_t n, double a[]);
 
+/// The same of one that is positive definite by how it was made.
+void dig_cholesky_sure(size_t n, double a[]);
+
 /// Solves L x = b in place: x takes b's place. O(n^2 / 2).
 void dig_lower_solve(size_t n, const double l[], double b[]);
 

@@ -130,15 +130,17 @@ static bool is_open(const struct dig_machine_answer *const answer, const size_t 
     return open;
 }
 
-// Leaves how much more one is than the other; of a way that was not told nothing.
-static void take_off(const enum dig_status status, double middle[][DIG_FEATURES],
-                     double of[][DIG_FEATURES])
+// Leaves how much more one is than the other. A step at which a dig is not told is a way that stays
+// shut.
+static enum dig_status take_off(const enum dig_status status, double middle[][DIG_FEATURES],
+                                double of[][DIG_FEATURES])
 {
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             of[t][f] = status == DIG_OK ? of[t][f] - middle[t][f] : 0.0;
         }
     }
+    return status == DIG_ENOMATCH ? DIG_OK : status;
 }
 
 enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
@@ -164,11 +166,8 @@ enum dig_status dig_machine_steps_make(const struct dig_trace_work *const     w,
             continue;
         }
         z[k]   = 1.0;
-        status = added_at(w, answer, z, steps->of[k]);
+        status = take_off(added_at(w, answer, z, steps->of[k]), middle, steps->of[k]);
         z[k]   = 0.0;
-        take_off(status, middle, steps->of[k]);
-        // A step at which a dig is not told is a way that stays shut.
-        status = status == DIG_ENOMATCH ? DIG_OK : status;
     }
     return status;
 }
@@ -185,9 +184,8 @@ enum dig_status dig_machine_others_make(const struct dig_trace_work *const     w
          i++) {
         const size_t k   = steps->steps++;
         steps->middle[k] = 0.0;
-        status           = added_with(w, answer, &answer->other[i], steps->of[k]);
-        take_off(status, middle, steps->of[k]);
-        status = status == DIG_ENOMATCH ? DIG_OK : status;
+        status =
+            take_off(added_with(w, answer, &answer->other[i], steps->of[k]), middle, steps->of[k]);
     }
     return status;
 }
