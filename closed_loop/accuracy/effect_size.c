@@ -54,8 +54,9 @@ static void left_of(void *const context, const double x[], double r[])
 // The least that any gravel of the table leaves of the moments.
 static double least_left(struct moments *const m, const double place[DIG_AXES])
 {
-    static const double from[][DIG_AXES] = {
-        { -0.6, -0.6, 0.0 }, { 0.6, -0.6, 0.0 }, { -0.6, 0.6, 0.0 }, { 0.6, 0.6, 0.0 }
+    static const struct dig_hypothesis none             = { .effects = 0 };
+    static const double                from[][DIG_AXES] = {
+                       { -0.6, -0.6, 0.0 }, { 0.6, -0.6, 0.0 }, { -0.6, 0.6, 0.0 }, { 0.6, 0.6, 0.0 }
     };
     double               memory[MOST * (DIG_AXES + 2)];
     struct dig_levenberg l     = { .unknowns   = DIG_AXES,
@@ -66,10 +67,7 @@ static double least_left(struct moments *const m, const double place[DIG_AXES])
                                    .context    = m,
                                    .memory     = memory };
     double               least = INFINITY;
-    for (int a = 0; a < DIG_AXES; a++) {
-        l.high[a] = m->batch->soil->surface->set->axis_count[a] > 1 ? 1.0 : 0.0;
-        l.low[a]  = -l.high[a];
-    }
+    dig_hypothesis_bounds(m->batch->soil, &none, l.low, l.high);
     for (size_t s = 0; s <= sizeof from / sizeof from[0]; s++) {
         double x[DIG_AXES];
         double squares = 0.0;

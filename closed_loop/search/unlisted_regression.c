@@ -28,7 +28,7 @@ enum {
 struct regression {
     size_t rows;
     double y[ROWS_MAX];
-    double gravel[DIG_AXES][ROWS_MAX];
+    double gravel[DIG_AXES][ROWS_MAX]; // one for all digs: 0 in the rows of each
     double function[DIG_BASES][DIG_FORCE_CHANNELS][ROWS_MAX];
 };
 
@@ -36,12 +36,6 @@ struct regression {
 struct states {
     double value[DIG_BASES][DIG_FEATURE_BINS];
 };
-
-static double weight_of(const struct dig_whitened_digs *const batch,
-                        const struct dig_fitted *const fitted, const size_t g)
-{
-    return 1.0 / sqrt(1.0 / (double)batch->group[g].digs + fitted->noise[g]);
-}
 
 static void put_rows(const struct dig_whitened_digs_group *const group,
                      const double feature[DIG_FEATURES], const double weight, double row[])
@@ -90,9 +84,9 @@ static void fill_mean(const struct dig_whitened_digs *const batch,
                       const struct states *const mean, double amplitude[DIG_FORCE_CHANNELS],
                       struct regression *const r)
 {
-    const struct dig_whitened_digs_group *const group  = &batch->group[g];
-    const double                                weight = weight_of(batch, plain, g);
-    double                                      model[DIG_FEATURES];
+    const struct dig_whitened_digs_group *const group = &batch->group[g];
+    const double weight = 1.0 / sqrt(1.0 / (double)group->digs + plain->noise[g]);
+    double       model[DIG_FEATURES];
     dig_fitted_features(batch->soil, plain, dig_whitened_digs_first(batch, g), model);
     put_rows(group, model, weight, r->y + r->rows);
     for (size_t k = 0; k < group->features; k++) {
@@ -139,19 +133,18 @@ static double explain(const struct regression *const r, const size_t functions,
 // The best functions of so many, one after the other.
 static struct dig_regressed choose(const struct regression *const r, const size_t candidates)
 {
-    const double         price                         = log((double)candidates / COMMON);
-    struct dig_regressed found                         = { .log_evidence = 0.0 };
-    enum dig_basis       chosen[DIG_UNLISTED_MOST + 1] = { DIG_BASIS_AMPLITUDE };
+    const double         price = log((double)candidates / COMMON);
+    struct dig_regressed found = { .log_evidence = 0.0 };
     size_t               of_gravel;
-    const double         alone = explain(r, 0, chosen, &of_gravel);
+    const double         alone = explain(r, 0, found.function, &of_gravel);
     for (bool better = true; better && found.functions < DIG_UNLISTED_MOST;) {
         better              = false;
         enum dig_basis best = DIG_BASIS_AMPLITUDE;
         for (size_t i = 0; i < candidates; i++) {
             size_t columns;
-            chosen[found.functions] = (enum dig_basis)i;
-            const double taken      = explain(r, found.functions + 1, chosen, &columns);
-            const double evidence   = 0.5 * (taken - alone) -
+            found.function[found.functions] = (enum dig_basis)i;
+            const double taken    = explain(r, found.functions + 1, found.function, &columns);
+            const double evidence = 0.5 * (taken - alone) -
                                     0.5 * (double)(columns - of_gravel) * log((double)r->rows) -
                                     (double)(found.functions + 1) * price;
             if (evidence > found.log_evidence) {
@@ -161,7 +154,6 @@ static struct dig_regressed choose(const struct regression *const r, const size_
             }
         }
         if (better) {
-            chosen[found.functions]           = best;
             found.function[found.functions++] = best;
         }
     }
@@ -267,9 +259,6 @@ static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i
     const struct dig_whitened_digs_group *const group = &batch->group[batch->dig[i].group];
     for (size_t k = 0; k < group->features; k++) {
         r->y[r->rows + k] = batch->dig[i].y[k] - group->mean[k];
-        for (size_t a = 0; a < DIG_AXES; a++) {
-            r->gravel[a][r->rows + k] = 0.0; // one gravel for all digs
-        }
     }
     fill_functions(group, less, 1.0, amplitude, r);
     r->rows += group->features;

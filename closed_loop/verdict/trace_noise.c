@@ -96,8 +96,7 @@ enum dig_status dig_trace_tell_noise(const struct dig_trace_work *const w,
         status = set_noise(w, place, &told);
     }
     if (status == DIG_OK && told.memory_s > 0.0) {
-        static const double middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-        dig_hypothesis_fit(w->batch, &none, middle, DIG_FIT_THOROUGH, plain);
+        dig_trace_fit_plain(w, plain);
     } else if (status == DIG_OK) {
         *w->batch = without;
     }

@@ -129,7 +129,7 @@ enum dig_status dig_trace_whiten(const struct dig_trace_work *const w, const dou
                                   w->batch);
 }
 
-static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *const plain)
+void dig_trace_fit_plain(const struct dig_trace_work *const w, struct dig_fitted *const plain)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
@@ -181,7 +181,7 @@ static enum dig_status open_depths(const struct dig_trace_work *const w, const d
         (void)set_share(w, shares[i]);
         status = dig_trace_whiten(w, place);
         if (status == DIG_OK) {
-            fit_plain(w, &plain);
+            dig_trace_fit_plain(w, &plain);
             const double misfit = dig_trace_misfit(w, &plain);
             best                = misfit < least ? shares[i] : best;
             least               = fmin(misfit, least);
@@ -202,12 +202,12 @@ static enum dig_status settle(const struct dig_trace_work *const w, const enum w
     }
     enum dig_status status = dig_trace_whiten(w, NULL);
     for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
-        fit_plain(w, plain);
+        dig_trace_fit_plain(w, plain);
         status = take_off_approaches(w, plain->number, round == 0 ? begin : LIKER);
         status = status == DIG_OK ? dig_trace_whiten(w, plain->number) : status;
     }
     if (status == DIG_OK) {
-        fit_plain(w, plain);
+        dig_trace_fit_plain(w, plain);
     }
     return status;
 }
@@ -226,7 +226,7 @@ static enum dig_status settle_best(const struct dig_trace_work *const w,
     if (!any) {
         const enum dig_status status = dig_trace_whiten(w, NULL);
         if (status == DIG_OK) {
-            fit_plain(w, plain);
+            dig_trace_fit_plain(w, plain);
         }
         return status;
     }
@@ -252,6 +252,6 @@ enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
         return dig_error_set(error, DIG_EINVAL,
                              "the digs of one trajectory have too little measured in common");
     }
-    fit_plain(w, plain);
+    dig_trace_fit_plain(w, plain);
     return DIG_OK;
 }

@@ -79,6 +79,9 @@ DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_trace_work *w, struc
 DIG_MUST_CHECK enum dig_status dig_trace_settle_machine(struct dig_trace_work *w,
                                                         const double           covariance[]);
 
+/// Fits the plain hypothesis to the batch, thoroughly.
+void dig_trace_fit_plain(const struct dig_trace_work *w, struct dig_fitted *plain);
+
 /// Whitens the digs to fit to, about the gravel at place (NULL: not known yet), into the batch.
 DIG_MUST_CHECK enum dig_status dig_trace_whiten(const struct dig_trace_work *w,
                                                 const double                 place[]);
