@@ -105,31 +105,23 @@ static enum dig_status weigh_digs(const struct dig_trace_work *const     w,
     return status;
 }
 
-static void keep_best(const struct dig_machine_answer *const answer, const size_t from,
-                      const double evidence, const double z[], struct choice *const choice)
-{
-    choice->of[from] = evidence;
-    if (evidence > choice->evidence) {
-        choice->evidence = evidence;
-        choice->best     = *answer;
-        memcpy(choice->z, z, sizeof choice->z);
-    }
-}
-
 // One answer: with free air's own values, or with what the digs make of what it leaves open. Where
-// a dig is not told with it, it is none.
+// a dig is not told with it, or nothing is open of a wide one, it is none.
 static enum dig_status weigh(const struct dig_trace_work *const w, const size_t from,
                              struct choice *const choice)
 {
     struct dig_machine_answer answer = w->air->answer[from];
     double                    soil   = 0.0;
     double                    z[DIG_STEPS_MAX];
-    const enum dig_status     status = answer.wide && answer.numbers == 0
-                                           ? DIG_ENOMATCH
-                                           : weigh_digs(w, &answer, answer.wide, &soil, z);
+    const enum dig_status     status = weigh_digs(w, &answer, answer.wide, &soil, z);
     if (status == DIG_OK) {
+        choice->of[from] = answer.log_evidence + soil - choice->soil0;
+    }
+    if (status == DIG_OK && choice->of[from] > choice->evidence) {
         dig_machine_steps_values(z, NULL, &answer);
-        keep_best(&answer, from, answer.log_evidence + soil - choice->soil0, z, choice);
+        choice->evidence = choice->of[from];
+        choice->best     = answer;
+        memcpy(choice->z, z, sizeof choice->z);
     }
     return status == DIG_ENOMATCH ? DIG_OK : status;
 }
