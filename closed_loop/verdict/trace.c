@@ -132,14 +132,12 @@ static void drop_what_is_not_worth_it(const struct dig_trace_work *const w,
 
 static void fill_errors(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
-    bool any = false;
     for (size_t i = 0; i < w->digs; i++) {
-        any = any || w->holdout[i];
         trace->holdouts += w->holdout[i] ? 1 : 0;
     }
     trace->before      = dig_judge_error(&trace->judged, w->holdout, false, w->settings->seed);
     trace->after       = dig_judge_error(&trace->judged, w->holdout, true, w->settings->seed);
-    trace->noise_floor = dig_judge_floor(&trace->judged, any ? w->holdout : w->fit);
+    trace->noise_floor = dig_judge_floor(&trace->judged, trace->holdouts > 0 ? w->holdout : w->fit);
 }
 
 static enum dig_status report(const struct dig_trace_work *const w, struct dig_trace *const trace,
