@@ -58,7 +58,7 @@ closed_loop/machine    machine_side | machine_air machine_fit machine_lines mach
 closed_loop/check      machine_check
 closed_loop/search     | cross_validation portmanteau search search_work unlisted
 closed_loop/accuracy   coverage score | decision effect_size judge trend
-closed_loop/verdict    trace | residuals tell_apart
+closed_loop/verdict    trace | residuals
 closed_loop/design     design
 closed_loop/report     design_report html machine_check_report plot report trace_report
 firmware_host/threads  | handoff log_limit notify rt

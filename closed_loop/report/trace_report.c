@@ -1,7 +1,6 @@
 #include "closed_loop/report/trace_report.h"
 
 #include "closed_loop/report/residual_report.h"
-#include "closed_loop/verdict/tell_apart.h"
 #include "core/markup.h"
 #include "core/text.h"
 #include "estimator/effects/effect.h"

@@ -1,4 +1,4 @@
-#include "closed_loop/verdict/tell_apart.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include "closed_loop/machine/machine_lines.h"
 #include "closed_loop/machine/machine_motion.h"

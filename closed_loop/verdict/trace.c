@@ -5,7 +5,6 @@
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/fit/posterior.h"
 #include "closed_loop/verdict/residuals.h"
-#include "closed_loop/verdict/tell_apart.h"
 #include "closed_loop/verdict/trace_work.h"
 
 #include <assert.h>

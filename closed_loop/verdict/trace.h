@@ -29,6 +29,9 @@ struct dig_tell_apart {
     double             repeats; // so many of them make it three sigmas
 };
 
+/// "A and B differ most …" as a sentence without its stop, of at most size - 1 characters.
+void dig_tell_apart_say(const struct dig_tell_apart *tell, size_t size, char text[]);
+
 struct dig_residuals; // closed_loop/verdict/residuals.h
 
 struct dig_trace {

@@ -1,6 +1,5 @@
 // What a trace says to people: the ground that effects are explained in, and what to do next.
 
-#include "closed_loop/verdict/tell_apart.h"
 #include "closed_loop/verdict/trace_work.h"
 #include "estimator/effects/effect.h"
 #include "tables/scene.h"

@@ -1,6 +1,6 @@
 // Tests for closed_loop/verdict/tell_apart.c
 
-#include "closed_loop/verdict/tell_apart.h"
+#include "closed_loop/verdict/trace_work.h"
 
 #include "tests/closed_loop/world_fixture.h"
 
