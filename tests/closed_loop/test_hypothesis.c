@@ -101,12 +101,13 @@ static double over_covariance(const size_t n, const double inverse[], const doub
 }
 
 // The squares of the likelihood as its header has it, worked out anew at other numbers than those
-// of the fit that tells the covariance.
+// of the fit that tells the covariance; *means: of that, the means'.
 static double squares_of(const struct dig_whitened_digs *const b, const struct dig_fitted *const by,
-                         const struct dig_fitted *const f)
+                         const struct dig_fitted *const f, double *const means)
 {
     double                  sum = 0.0;
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
+    *means = 0.0;
     dig_hypothesis_errors(b, by, error);
     for (size_t g = 0; g < b->groups; g++) {
         const struct dig_whitened_digs_group *const group = &b->group[g];
@@ -129,9 +130,9 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
                            : 0.0;
             }
         }
-        sum += over_covariance(group->features, error[g].inverse, rest);
+        *means += over_covariance(group->features, error[g].inverse, rest);
     }
-    return sum;
+    return sum + *means;
 }
 
 // Whether there are clearly smaller squares a little off.
@@ -143,9 +144,10 @@ static bool is_lower_beside(const struct dig_whitened_digs *const b,
         const size_t j = i < DIG_AXES ? i : DIG_AT_U(i - DIG_AXES);
         for (double step = -0.02; step <= 0.02; step += 0.04) {
             struct dig_fitted off = *f;
+            double            means;
             off.number[j] += step;
-            lower =
-                lower || (fabs(off.number[j]) < 1.0 && squares_of(b, f, &off) < f->squares - 0.02);
+            lower = lower || (fabs(off.number[j]) < 1.0 &&
+                              squares_of(b, f, &off, &means) < f->squares - 0.02);
         }
     }
     return lower;
@@ -172,7 +174,10 @@ TEST(a_fit_ends_where_the_squares_it_tells_are_least)
     for (size_t h = 0; h < sizeof all / sizeof all[0]; h++) {
         struct dig_fitted fitted;
         dig_hypothesis_fit(&batch, &all[h], start, DIG_FIT_BARE, &fitted);
-        assert_close(fitted.squares, squares_of(&batch, &fitted, &fitted), 1e-9 * fitted.squares);
+        double       means;
+        const double squares = squares_of(&batch, &fitted, &fitted, &means);
+        assert_close(fitted.squares, squares, 1e-9 * fitted.squares);
+        assert_close(fitted.means, means, 1e-9 * fitted.squares);
         assert_false(is_lower_beside(&batch, &fitted));
     }
 }
