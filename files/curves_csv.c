@@ -105,6 +105,20 @@ static bool is_same_dig(const struct dig_foreign_dig *const a,
            dig_gravel_is_same(&a->gravel, &b->gravel);
 }
 
+// Of two samples of one dig.
+static enum dig_status check_ascends(const struct reader *const r, const size_t row)
+{
+    const double was_s = number(r, row - 1, DIG_MAP_T_s);
+    const double t_s   = number(r, row, DIG_MAP_T_s);
+    return t_s > was_s
+               ? DIG_OK
+               : dig_error_set(r->error, DIG_EINVAL,
+                               "%s:%d: column %s: %.9g after %.9g in one dig, expected ascending "
+                               "time, or another packing where another dig begins",
+                               r->path, r->csv.line[row], r->map->field[DIG_MAP_T_s].column, t_s,
+                               was_s);
+}
+
 // Visits the dig of the rows from *begin on, which becomes the first row behind it.
 static enum dig_status visit_dig(const struct reader *const r, size_t *const begin,
                                  const struct dig_foreign_visitor *const visitor)
@@ -118,6 +132,7 @@ static enum dig_status visit_dig(const struct reader *const r, size_t *const beg
         if (status == DIG_OK && !is_same_dig(&dig, &next)) {
             break;
         }
+        status = status == DIG_OK ? check_ascends(r, end) : status;
     }
     if (status != DIG_OK) {
         return status;

@@ -149,6 +149,8 @@ TEST(what_does_not_fit_the_map_is_refused_by_its_line)
           ":2: column dig: \"$(pull)\", expected a name of letters" },
         { "dig,mu,rho,ms,torque,X,Z,rep\n,.3,2.5,0,1,1,1,0\n",
           ":2: column dig: \"\", expected a name" },
+        { "dig,mu,rho,ms,torque,X,Z,rep\npull,.3,2.5,5,1,1,1,0\npull,.3,2.5,0,1,1,1,0\n",
+          ":3: column ms: 0 after 0.005 in one dig, expected ascending time" },
         { "dig,mu,rho,ms,torque,X,Z,rep\n", ":1: no row of numbers, expected a header of mu," },
         { "", ":1: no header, expected a header of mu," },
         { "dig,mu,rho,ms,torque,X,Z,rep,mu\n", ":1: column mu: given twice, expected once" },

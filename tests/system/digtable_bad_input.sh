@@ -44,6 +44,8 @@ refused "a shard that is no fraction" "--shard 3: expected I/N" generate $scene 
 refused "import without a map" "--map MAP.yaml missing" import x.csv -o "$out"
 refused "import of a map that is not there" "absent.yaml: No such file" import x.csv --map "$work/absent.yaml" -o "$out"
 printf 'friction,rolling,density_kgpm3,packing,t_s,My_Nm,Fx_N,Fz_N,carried_kg,depth,attack_deg\n.5,.5,2500,0,0,1,1,1,1,1,0\n.5,.5,2500,0,.005,1,1,one,1,1,0\n' >"$work/curves.csv"
+digtable import tests/data/formats/curves.csv --map tests/data/formats/curve_map.yaml -o "$work/example.sqlite"
+check "the example of curves is imported" eval 'is $code 0 && grep -q "2 digs" "$work/out" "$work/err"'
 refused "import of a CSV with a text" 'curves.csv:3: column Fz_N: "one", expected a finite number' import "$work/curves.csv" --map tests/data/formats/curve_map.yaml -o "$out"
 { sed 's/^scene: .*/scene: low.yaml/' tests/data/formats/curve_map.yaml
   printf '  depth: {column: depth}\n  attack_deg: {column: attack_deg}\n'; } >"$work/map.yaml"
