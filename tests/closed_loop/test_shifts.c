@@ -100,6 +100,27 @@ static double squares_of_beds(const struct dig_scatter *const scatter, const siz
     return sum;
 }
 
+// Of a gravel away from the middle, the first direction is that of the first axis there.
+TEST(the_first_direction_of_beds_is_what_friction_changes_there)
+{
+    static struct dig_scatter   scatter;
+    const struct dig_hypothesis plain                          = { .effects = 0 };
+    double                      number[DIG_HYPOTHESIS_NUMBERS] = { 0.5, 0.6, -0.4 };
+    struct dig_shifts           shifts;
+    double                      along = 0.0, beds = 0.0, axis = 0.0;
+    make_batch(number);
+    scatter                                       = *world.scatter;
+    scatter.as_gravels[batch.group[0].trajectory] = 0.8;
+    batch.scatter                                 = &scatter;
+    fill(&plain, number, &shifts);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        along += shifts.as_gravels[0][f] * shifts.of[0][f];
+        beds += pow(shifts.as_gravels[0][f], 2.0);
+        axis += pow(shifts.of[0][f], 2.0);
+    }
+    assert_close(fabs(along) / sqrt(beds * axis), 1.0, 1e-9);
+}
+
 // As much in each of three directions as the scatter says, less the more beds there are; and the
 // surface is a mean of beds.
 TEST(beds_differ_as_gravels_do)
