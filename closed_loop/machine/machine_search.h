@@ -1,5 +1,5 @@
-// What the rooms of the search in free air work on together. Internal to machine_trace.c and
-// machine_answers.c.
+// What the rooms of the search in free air work on together. Internal to machine_trace.c,
+// machine_select.c and machine_answers.c.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
@@ -26,6 +26,13 @@ struct dig_machine_search {
     double                   none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
     struct dig_machine_drift drift;                     // that explains as much as the set, or none
 };
+
+/// Chooses the set that explains the air, from equations with nothing explained yet, and leaves out
+/// what slewing pulls. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_machine_select(struct dig_machine_search *s);
+
+/// Whether what is left of the rows is more than their noise, or the set is makeshift.
+bool dig_machine_is_unclear(const struct dig_machine_search *s);
 
 /// Every effect as it competed, by itself; best first. inclusion: by effect.
 void dig_machine_write_candidates(struct dig_machine_search *s, const double inclusion[],

@@ -1,30 +1,15 @@
-// The search for what is missing of the machine: effects join one after the other, and after each
-// the equations are made linear again where it has led.
+// What free air shows that is missing of the machine: its equations, and what is reported of the
+// effects that explain them.
 
-#include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_side_private.h"
-#include "closed_loop/machine/machine_slew.h"
 #include "core/chance.h"
-#include "core/units.h"
-#include "estimator/effects/effect.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-// Everything that has columns.
-static const unsigned all_columns = DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE;
-
-enum { BOOTSTRAPS = 200, REFINEMENTS = 8, ROUNDS = 6 };
-
-// Nor is air whose means over segments leave this much more than chi-squared should, in its sigmas.
-static const double unclear_sigmas = 5.0;
-
-// Of noise told by the air itself, that of both may be more: it is known from some dozens of
-// blocks, and may still move from one to the next.
-static const double own_noise = 1.4;
+enum { BOOTSTRAPS = 200 };
 
 static void search_finish(struct dig_machine_search *const s)
 {
@@ -60,248 +45,6 @@ static enum dig_status search_make(const struct dig_machine_side *const side,
     }
     tolerance_of(&s->air, scale);
     return dig_fit_make(&s->air, scale, &s->fit);
-}
-
-// Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
-static void refine(struct dig_machine_search *const s)
-{
-    for (int i = 0; i < REFINEMENTS; i++) {
-        const double s2 = s->fit.s2;
-        dig_lines_update(&s->fit.lines, s->set | DIG_LINES_OF_FILE);
-        dig_fit_sum(&s->fit, NULL, NULL);
-        dig_fit_set_noise(&s->fit, s2); // of all effects together, which these are not
-        struct dig_fit_answer answer = { .at = s->fit.at };
-        double                widths[DIG_LINES_COLUMNS_MAX];
-        dig_fit_solve(&s->fit, s->set, &answer);
-        for (size_t c = 0; c < s->fit.lines.columns; c++) {
-            // Of those that have left the set, too.
-            widths[c] = s->fit.lines.column[c].effect == DIG_EFFECT_UNLISTED ? 1.0 : answer.width;
-        }
-        if (dig_fit_step(&s->fit, widths) * answer.width < 0.005) {
-            break;
-        }
-    }
-    s->slow  = dig_lines_judge(&s->fit.lines);
-    s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
-}
-
-// Leaves out what slewing pulls beside all effects as the trusted rows have them.
-static bool leave_out_slewing(struct dig_machine_search *const s)
-{
-    struct dig_fit_answer all = { .at = s->fit.at };
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
-    dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
-    return dig_slew_leave_out(&s->fit.lines, s->fit.at);
-}
-
-// The equations without any effect and without what slewing pulls, rows as far as their own scatter
-// lets them be known.
-static void begin(struct dig_machine_search *const s)
-{
-    for (int round = 0; round < ROUNDS && leave_out_slewing(s); round++) {
-    }
-    s->noise2 = 1.0;
-    if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
-        s->noise2 = own_noise;
-        dig_lines_update(&s->fit.lines, all_columns);
-        dig_fit_sum(&s->fit, NULL, NULL);
-    }
-    s->slow = dig_lines_judge(&s->fit.lines);
-}
-
-// What is left of the rows of each dig where the lines stand, for a report.
-static void rest_by_dig(struct dig_machine_search *const s)
-{
-    double *const rest                    = s->fit.lines.work;
-    double        count[DIG_MEASURED_MAX] = { 0.0 };
-    double        sum[DIG_MEASURED_MAX]   = { 0.0 };
-    dig_lines_rest(&s->fit.lines, s->fit.lines.at, rest);
-    for (size_t r = 0; r < s->air.rows; r++) {
-        const size_t d = s->air.segment[s->air.row[r].segment].dig;
-        sum[d] += pow(s->fit.lines.trust[r] * rest[r], 2.0);
-        count[d] += 1.0;
-    }
-    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
-        s->none_of[d] = count[d] > 0.0 ? sqrt(sum[d] / count[d]) : (double)NAN;
-    }
-}
-
-// In scales.
-static double common_payload(const struct dig_machine_search *const s)
-{
-    return s->fit.lines.at[dig_lines_first(&s->fit.lines, DIG_EFFECT_PAYLOAD)];
-}
-
-static int effects_of(const struct dig_machine_search *const s)
-{
-    int effects = 0;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
-    }
-    return effects;
-}
-
-// More effects than one trusts to be there at once share out the form of a cause that has none of
-// theirs; so does a payload that weighs less than nothing.
-static bool is_makeshift(const struct dig_machine_search *const s)
-{
-    return effects_of(s) > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
-}
-
-// Whether what is left of the rows is more than their noise.
-static bool is_unclear(const struct dig_machine_search *const s)
-{
-    const double rows  = (double)s->air.rows;
-    const double means = (double)(DIG_JOINTS * s->air.segments);
-    return s->rest2 > s->noise2 * DIG_MACHINE_UNCLEAR_REST2 * rows || is_makeshift(s) ||
-           s->slow > s->noise2 * (means + unclear_sigmas * sqrt(2.0 * means));
-}
-
-// A first dig that carried more than the others looks like a bucket that is heavier and carries
-// less than nothing.
-static void take_weight_for_payload(struct dig_machine_search *const s)
-{
-    static const unsigned weighs = 1U << DIG_EFFECT_BUCKET_WEIGHT;
-    if ((s->set & weighs) == 0 || !(common_payload(s) < 0.0)) {
-        return;
-    }
-    s->set &= ~weighs;
-    for (size_t c = 0; c < s->fit.lines.columns; c++) {
-        const bool gone = s->fit.lines.column[c].effect == DIG_EFFECT_BUCKET_WEIGHT ||
-                          s->fit.lines.column[c].effect == DIG_EFFECT_PAYLOAD;
-        s->fit.lines.at[c] = gone ? 0.0 : s->fit.lines.at[c];
-    }
-    refine(s);
-}
-
-// Effects join until none earns its place, `first` before all others.
-static void join(struct dig_machine_search *const s, const unsigned first)
-{
-    s->set = first;
-    for (int round = 1; round < ROUNDS; round++) {
-        refine(s);
-        // Where the first steps have led, others may do better, and some may not be needed.
-        const unsigned before = s->set;
-        const unsigned anew   = dig_fit_select(&s->fit, s->least, 0);
-        const unsigned more   = dig_fit_select(&s->fit, s->least, before);
-        s->set = dig_fit_evidence(&s->fit, anew) >= dig_fit_evidence(&s->fit, more) - s->least
-                     ? anew
-                     : more;
-        if (s->set == before) {
-            break;
-        }
-    }
-    take_weight_for_payload(s);
-}
-
-static void begin_again(struct dig_machine_search *const s)
-{
-    memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
-    s->slow  = dig_lines_judge(&s->fit.lines);
-    s->rest2 = s->rest2_none;
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
-}
-
-// The one of the set that explains most alone.
-static unsigned leader_of(const struct dig_machine_search *const s, const unsigned set)
-{
-    double   most = -INFINITY;
-    unsigned best = 0;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        const unsigned one = set & (1U << e);
-        if (one != 0 && dig_fit_evidence(&s->fit, one) > most) {
-            most = dig_fit_evidence(&s->fit, one);
-            best = one;
-        }
-    }
-    return best;
-}
-
-static void select_effects(struct dig_machine_search *const s)
-{
-    begin(s);
-    rest_by_dig(s);
-    s->rest2_none        = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    s->rest2             = s->rest2_none;
-    const unsigned first = dig_fit_select(&s->fit, s->least, 0);
-    // Where one leads, the others may not be needed: they explain what its slope there does not.
-    // But alone it may take what is another's for its own, and then stays there.
-    unsigned others = first;
-    unsigned leads  = leader_of(s, first);
-    join(s, leads);
-    while (others != 0 && first != leads && is_unclear(s)) {
-        others &= ~leads;
-        begin_again(s);
-        leads = others != 0 ? leader_of(s, others) : first;
-        join(s, leads);
-    }
-}
-
-// Nothing is explained, and only the rows of the air before digs are trusted, or of that after.
-static void trust_only(struct dig_machine_search *const s, const bool after)
-{
-    memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
-    for (size_t i = 0; i < s->air.segments; i++) {
-        const struct dig_air_segment *const segment = &s->air.segment[i];
-        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
-            s->fit.lines.trust[r] = segment->after == after ? 1.0 : 0.0;
-        }
-    }
-}
-
-static void trust_all(struct dig_machine_search *const s)
-{
-    for (size_t r = 0; r < s->air.rows; r++) {
-        s->fit.lines.trust[r] = 1.0;
-    }
-}
-
-// What was found before, where it stood.
-static void return_to(const struct dig_machine_search *const found,
-                      const struct dig_slew_rows *const rows, struct dig_machine_search *const s)
-{
-    *s = *found;
-    dig_slew_rows_restore(rows, &s->air);
-    (void)dig_lines_judge(&s->fit.lines);
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
-}
-
-// All effects together may take what slewing pulls for their own, where it goes with the same
-// motion in every dig. Where air is not understood, what slewing would be beside the effects of the
-// air before digs alone, or of that after, is left out - if the rest is understood then. An effect
-// that explains all air is believed: what it pulls may look like slewing to half of the air.
-static enum dig_status select_without_slewing(struct dig_machine_search *const s)
-{
-    struct dig_slew_rows all    = { .row = NULL };
-    struct dig_slew_rows kept   = { .row = NULL };
-    enum dig_status      status = dig_slew_rows_save(&s->air, &all);
-    if (status == DIG_OK) {
-        select_effects(s);
-        status = dig_slew_rows_save(&s->air, &kept);
-    }
-    const struct dig_machine_search found = *s;
-    bool                            clear = !is_unclear(s);
-    const bool                      asked = status == DIG_OK && !clear;
-    for (int after = 0; after < 2 && asked && !clear; after++) {
-        dig_slew_rows_restore(&all, &s->air);
-        trust_only(s, after > 0);
-        if (leave_out_slewing(s)) {
-            trust_all(s);
-            select_effects(s);
-            clear = !is_unclear(s);
-        }
-    }
-    if (asked && !clear) {
-        return_to(&found, &kept, s);
-    }
-    free(all.row);
-    free(kept.row);
-    return status;
 }
 
 // How often each effect is chosen when the digs are drawn anew.
@@ -348,7 +91,7 @@ static void write_finding(struct dig_machine_search *const s, const uint64_t see
 {
     double inclusion[DIG_MACHINE_EFFECTS];
     doubt_names(s);
-    const bool unclear = is_unclear(s) || s->drift.follows != NULL;
+    const bool unclear = dig_machine_is_unclear(s) || s->drift.follows != NULL;
     *finding = (struct dig_machine_finding){ .unexplained = unclear, .follows = s->drift.follows };
     finding->residual_air = sqrt(s->rest2_none / (double)s->air.rows);
     memcpy(finding->residual_air_of, s->none_of, sizeof s->none_of);
@@ -381,7 +124,7 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
             finding->residual_air_of[d] = (double)NAN;
         }
     } else if (status == DIG_OK) {
-        status = select_without_slewing(&s);
+        status = dig_machine_select(&s);
         if (status == DIG_OK) {
             write_finding(&s, seed, side->own_payload_kg, finding);
         }
