@@ -79,12 +79,26 @@ TEST(a_known_covariance_is_found)
     dig_scatter_destroy(s);
 }
 
+// Mean square of the residuals kept from the weaker half of the gravels, or from the stronger.
+static double kept_from(const struct dig_scatter *const s, const size_t half)
+{
+    const size_t n   = s->residuals[0] / 2;
+    double       sum = 0.0;
+    for (size_t i = half * n; i < (half + 1) * n; i++) {
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            sum += s->residual[0][i][f] * s->residual[0][i][f] / (double)(n * DIG_FEATURES);
+        }
+    }
+    return sum;
+}
+
 TEST(stronger_gravels_may_scatter_more)
 {
     struct dig_scatter *s = pooled(0.6);
     assert_close(dig_scatter_factor(s, 0, 1.0) / dig_scatter_factor(s, 0, 0.0), 1.6, 0.2);
     assert_close(dig_scatter_factor(s, 0, -1.0) / dig_scatter_factor(s, 0, 0.0), 0.45, 0.15);
-    assert_true(dig_scatter_factor(s, 0, -100.0) >= 0.4); // never none
+    assert_true(dig_scatter_factor(s, 0, -100.0) >= 0.4);       // never none
+    assert_close(kept_from(s, 1) / kept_from(s, 0), 1.0, 0.15); // as of factor 1
     dig_scatter_destroy(s);
 }
 
