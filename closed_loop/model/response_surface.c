@@ -122,8 +122,8 @@ static bool look_up(const struct dig_response_surface *const surface, const size
     if (set->packings[slot] <= 0) {
         return false;
     }
-    dug->curve  = &set->curve[slot];
-    dug->weight = (double)set->packings[slot] / (double)copies_of(set);
+    *dug = (struct dug){ .curve  = &set->curve[slot],
+                         .weight = (double)set->packings[slot] / (double)copies_of(set) };
     dig_response_surface_place(surface, &set->gravel[entry], dug->place);
     terms_at(surface, dug->place, dug->term);
     return true;
