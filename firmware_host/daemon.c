@@ -1,6 +1,5 @@
 #include "firmware_host/daemon.h"
 
-#include "firmware_host/config/describe.h"
 #include "firmware_host/daemon_private.h"
 
 #include <assert.h>
@@ -186,16 +185,4 @@ void dig_daemon_destroy(struct dig_daemon *const daemon)
         dig_loaded_finish(&daemon->loaded);
         free(daemon);
     }
-}
-
-void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(const char *line))
-{
-    assert(d != NULL);
-    dig_describe(&d->loaded, d->fit.matcher.set, d->input.name, say);
-}
-
-void dig_daemon_describe_json(const struct dig_daemon *const d, FILE *const file)
-{
-    assert(d != NULL);
-    dig_describe_json(&d->loaded, d->fit.matcher.set, d->input.name, file);
 }

@@ -84,25 +84,22 @@ static int fail(const enum dig_status status, const struct dig_error *const erro
     return status == DIG_ENOMEM ? EXIT_FAILED : EXIT_USAGE;
 }
 
-static int bad_usage(const char *const what)
-{
-    say(what);
-    (void)fputs("Try digsightd --help.\n", stderr);
-    return EXIT_USAGE;
-}
-
 int main(const int argc, char *argv[])
 {
     struct dig_error error = { "" };
     struct options   o     = { .config = NULL };
     dig_streams_begin();
     if (dig_options_read(&program, argc, argv, &o, &error) == NULL) {
-        return bad_usage(error.text);
+        dig_options_refuse(&program, NULL, error.text, stderr);
+        return EXIT_USAGE;
     }
     if (o.config == NULL || optind < argc || (o.json && !o.check)) {
-        return bad_usage(o.config == NULL ? "no configuration, expected -c CONFIG.yaml"
-                         : optind < argc  ? "unknown argument"
-                                          : "--json: expected with --check only");
+        dig_options_refuse(&program, NULL,
+                           o.config == NULL ? "no configuration, expected -c CONFIG.yaml"
+                           : optind < argc  ? "unknown argument"
+                                            : "--json: expected with --check only",
+                           stderr);
+        return EXIT_USAGE;
     }
     struct dig_daemon *daemon = NULL;
     enum dig_status    status = dig_daemon_create(o.config, &daemon, &error);

@@ -63,7 +63,7 @@ closed_loop/design     design
 closed_loop/report     design_report html machine_check_report plot report trace_report
 firmware_host/threads  | handoff log_limit notify rt
 firmware_host/bus      | frame_watch input reading register_plan signal_map stuck
-firmware_host/config   load_model | config describe load
+firmware_host/config   load_model | config load
 firmware_host/tick     | loop
 firmware_host/matching | fit
 firmware_host/publish  | publish

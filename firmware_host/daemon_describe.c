@@ -1,7 +1,8 @@
-#include "firmware_host/config/describe.h"
+// What a configuration and all it names turned out to be, for people and for programs.
 
 #include "core/markup.h"
 #include "core/table_step.h"
+#include "firmware_host/daemon_private.h"
 
 #include <assert.h>
 #include <string.h>
@@ -13,13 +14,14 @@ static double scale_of(const struct dig_loaded *const l, const struct dig_curve_
     return l->machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
 }
 
-void dig_describe(const struct dig_loaded *const l, const struct dig_curve_set *const set,
-                  const char *const input, void (*const say)(const char *line))
+void dig_daemon_describe(const struct dig_daemon *const d, void (*const say)(const char *line))
 {
-    assert(l != NULL && set != NULL && input != NULL && say != NULL);
-    char line[LINE];
-    char digs[LINE] = "";
-    char trembles[DIG_TABLE_STEP_TEXT_SIZE];
+    assert(d != NULL && say != NULL);
+    const struct dig_loaded *const    l   = &d->loaded;
+    const struct dig_curve_set *const set = d->fit.matcher.set; // the table in use
+    char                              line[LINE];
+    char                              digs[LINE] = "";
+    char                              trembles[DIG_TABLE_STEP_TEXT_SIZE];
     for (size_t t = 0; t < set->trajectories; t++) {
         const size_t used = strlen(digs);
         (void)snprintf(digs + used, sizeof digs - used, "%s%s%s", used > 0 ? ", " : "",
@@ -46,7 +48,7 @@ void dig_describe(const struct dig_loaded *const l, const struct dig_curve_set *
                        l->config.machine.text);
         say(line);
     }
-    (void)snprintf(line, sizeof line, "input %s; tick %.0f Hz; LCM %s", input,
+    (void)snprintf(line, sizeof line, "input %s; tick %.0f Hz; LCM %s", d->input.name,
                    1.0 / l->config.tick_s, l->config.lcm_url);
     say(line);
     char missing[DIG_SIGNAL_NAMES_SIZE];
@@ -58,10 +60,11 @@ void dig_describe(const struct dig_loaded *const l, const struct dig_curve_set *
     }
 }
 
-void dig_describe_json(const struct dig_loaded *const l, const struct dig_curve_set *const set,
-                       const char *const input, FILE *const file)
+void dig_daemon_describe_json(const struct dig_daemon *const d, FILE *const file)
 {
-    assert(l != NULL && set != NULL && input != NULL && file != NULL);
+    assert(d != NULL && file != NULL);
+    const struct dig_loaded *const    l   = &d->loaded;
+    const struct dig_curve_set *const set = d->fit.matcher.set;
     dig_json_put(file,
                  "{\"table\": {\"path\": %s, \"scene\": %s, \"scene_hash\": %s, \"gravels\": %zu,\n"
                  "  \"digs\": [",
@@ -76,7 +79,7 @@ void dig_describe_json(const struct dig_loaded *const l, const struct dig_curve_
                  "]},\n \"machine\": {\"name\": %s, \"bucket_m\": %.9g, \"scale\": %.9g},\n"
                  " \"input\": %s, \"tick_Hz\": %.9g, \"lcm_url\": %s,\n \"not_measured\": [",
                  l->machine.name, l->machine.link[DIG_JOINT_BUCKET].length_m, scale_of(l, set),
-                 input, 1.0 / l->config.tick_s, l->config.lcm_url);
+                 d->input.name, 1.0 / l->config.tick_s, l->config.lcm_url);
     const enum dig_sensing sensing = dig_signals_sensing(l->measured);
     const char            *comma   = "";
     for (int i = 0; i < DIG_SIGNALS; i++) {
