@@ -1,6 +1,7 @@
-#include "firmware_host/config/config_map_text.h"
+// The schema of the signal map.
 
 #include "files/yaml/yaml_schema.h"
+#include "firmware_host/config/config_map_parts.h"
 
 #define NAME(key, flags, type, member)                                                             \
     CYAML_FIELD_STRING_PTR(key, (flags) | CYAML_FLAG_POINTER, struct type, member, 1, 63)
