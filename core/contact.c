@@ -103,3 +103,10 @@ double dig_contact_step_s(const struct dig_material *const material,
         2.0 * 0.4 * mass_kg / (DAMPING_CONTACTS * 2.0 / 3.0 * 2.0 * contact.damping_Nspm);
     return fmin(fmin(RAYLEIGH_SHARE * rayleigh_s, contact.time_s / STEPS_PER_CONTACT), damping_s);
 }
+
+double dig_contact_stiffness_power(const struct dig_material *const material,
+                                   const enum dig_normal_law        normal)
+{
+    const double of_fixed = normal == DIG_NORMAL_HERTZ ? 1.0 / 3.0 : 0.2;
+    return material->young_at_kgpm3 > 0.0 ? 1.0 : of_fixed;
+}

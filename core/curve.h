@@ -138,7 +138,8 @@ struct dig_curve_set {
     double                tooth_m; // bucket pin to tooth: the length scale of Froude similarity
     double                bucket_width_m;
     double                young_Pa;
-    double                smooth_half_s; // smoothing already applied to the curves, rig time
+    double                smooth_half_s;   // smoothing already applied to the curves, rig time
+    double                stiffness_power; // dig_contact_stiffness_power() of the scene
     struct dig_table_step step;
     size_t                copies; // entries that hold the same digs (tables/density_scale.h); 0: 1
     size_t                trajectories;

@@ -1,5 +1,6 @@
 #include "tables/load.h"
 
+#include "core/contact.h"
 #include "core/outline.h"
 #include "core/sort.h"
 #include "tables/density_scale.h"
@@ -84,11 +85,12 @@ static void copy_head(struct dig_curve_set *const set, const struct dig_table_he
     memcpy(set->scene_name, head->scene_name, sizeof set->scene_name);
     memcpy(set->scene_hash, head->scene_hash, sizeof set->scene_hash);
     memcpy(set->trajectory, head->trajectory, sizeof set->trajectory);
-    set->tooth_m        = head->tooth_m;
-    set->bucket_width_m = head->bucket_width_m;
-    set->young_Pa       = head->young_Pa;
-    set->smooth_half_s  = head->smooth_half_s;
-    set->trajectories   = head->trajectories;
+    set->tooth_m         = head->tooth_m;
+    set->bucket_width_m  = head->bucket_width_m;
+    set->young_Pa        = head->young_Pa;
+    set->smooth_half_s   = head->smooth_half_s;
+    set->stiffness_power = dig_contact_stiffness_power(&head->finest, head->normal);
+    set->trajectories    = head->trajectories;
 }
 
 // Takes over what the plain grounds hold.

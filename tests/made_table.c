@@ -91,11 +91,12 @@ struct dig_curve_set *made_table(const struct made_options *const options)
 
     struct dig_curve_set *const set = calloc(1, sizeof *set);
     (void)snprintf(set->scene_name, sizeof set->scene_name, "made");
-    set->tooth_m        = 0.09;
-    set->bucket_width_m = 0.07;
-    set->young_Pa       = 5e6;
-    set->smooth_half_s  = DIG_SMOOTH_HALF_s;
-    set->trajectories   = MADE_TRAJECTORIES;
+    set->tooth_m         = 0.09;
+    set->bucket_width_m  = 0.07;
+    set->young_Pa        = 5e6;
+    set->smooth_half_s   = DIG_SMOOTH_HALF_s;
+    set->stiffness_power = 1.0;
+    set->trajectories    = MADE_TRAJECTORIES;
     for (int t = 0; t < MADE_TRAJECTORIES; t++) {
         set->trajectory[t] = made_trajectory((enum made_trajectory)t);
     }

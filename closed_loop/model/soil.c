@@ -105,11 +105,11 @@ static const struct dig_soil_template *terms_of(const struct dig_soil *const soi
                                                 double       term[DIG_SOIL_TERMS])
 {
     const struct dig_soil_template *const template = dig_soil_template_at(soil, effect, t, u);
-    struct dig_soil_at at = { u, dig_soil_strength(soil->surface, place, amplitude) };
-    if (dig_effect_of(effect) != NULL && dig_effect_of(effect)->over_density) {
-        const struct dig_gravel gravel = dig_response_surface_gravel(soil->surface, place);
-        at.u *= template->base_density_kgpm3 / gravel.value[DIG_AXIS_DENSITY_kgpm3];
-    }
+    const struct dig_gravel  gravel = dig_response_surface_gravel(soil->surface, place);
+    const struct dig_soil_at at     = { u * dig_template_scale(soil->surface->set, effect,
+                                                               template->base_density_kgpm3,
+                                                               gravel.value[DIG_AXIS_DENSITY_kgpm3]),
+                                        dig_soil_strength(soil->surface, place, amplitude) };
     dig_soil_terms(template, &at, term);
     return template;
 }

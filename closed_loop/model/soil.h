@@ -6,16 +6,16 @@
 //
 //   delta = sum_p s^p (a_p u + b_p u^2 + sum_k c_kp hat_k(u)),  p = 0 … 2
 //
-// u = (magnitude - absent) / the table's largest, for cohesion and adhesion times base density /
-// density; s = log(amplitude of My / density), -1 … 1 over the base gravels; hat_k is 1 at the k-th
-// magnitude of the table, 0 at the others and where the effect is absent, straight between, and the
-// last two go on: a layer is felt from where the tooth reaches it. Powers for which there are too
-// few gravels are left out, u^2 where there is one magnitude, hats at magnitudes that one gravel
-// alone was dug at; all but a_0 are drawn towards nothing as far as the beds allow, and with them
-// the curve over u towards a parabola or a line. A layer below zero is a loose one, above it a hard
-// one: two templates that meet where u is 0. An effect without templates is a factor on the plain
-// dig instead, as its file in estimator/effects/ has it. One that differs from dig to dig acts by
-// its share: compaction pass - 1 fold.
+// u = (magnitude - absent) / the table's largest, for cohesion and adhesion over the stiffness of
+// contacts (dig_template_scale()); s = log(amplitude of My / density), -1 … 1 over the base
+// gravels; hat_k is 1 at the k-th magnitude of the table, 0 at the others and where the effect is
+// absent, straight between, and the last two go on: a layer is felt from where the tooth reaches
+// it. Powers for which there are too few gravels are left out, u^2 where there is one magnitude,
+// hats at magnitudes that one gravel alone was dug at; all but a_0 are drawn towards nothing as far
+// as the beds allow, and with them the curve over u towards a parabola or a line. A layer below
+// zero is a loose one, above it a hard one: two templates that meet where u is 0. An effect without
+// templates is a factor on the plain dig instead, as its file in estimator/effects/ has it. One
+// that differs from dig to dig acts by its share: compaction pass - 1 fold.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_SOIL_H
 #define DIG_CLOSED_LOOP_MODEL_SOIL_H

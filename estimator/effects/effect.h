@@ -74,7 +74,7 @@ struct dig_effect {
                                   // began, which a saved model sets; 0: none
     bool   templated;             // parameter 0 is the magnitude of templates, times the share
     bool   whole;                 // beds are dug at whole magnitudes, from 1
-    bool   over_density;          // acts by magnitude / density
+    bool   over_stiffness;        // acts by magnitude / stiffness of the grains' contacts
     bool   mirrored;              // has a meaning on both sides of absent, dug on one or on both
     bool   unlike_sides;          // magnitudes below absent are of another thing than those above
     bool   contrasted;            // what templates add is multiplied by parameter 1

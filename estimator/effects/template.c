@@ -217,15 +217,24 @@ static void add_share(const struct base *const base, const struct between *const
     }
 }
 
-// The magnitude that acts on a base as `magnitude` acts on the gravel, within the base's range.
-static double magnitude_at(const struct base *const base, const enum dig_effect_id effect,
-                           const double magnitude, const struct dig_gravel *const gravel)
+double dig_template_scale(const struct dig_curve_set *const plain, const enum dig_effect_id effect,
+                          const double base_kgpm3, const double density_kgpm3)
 {
-    double scaled = magnitude;
-    if (dig_effect_of(effect)->over_density) {
-        scaled *=
-            base->gravel.value[DIG_AXIS_DENSITY_kgpm3] / gravel->value[DIG_AXIS_DENSITY_kgpm3];
-    }
+    assert(plain != NULL);
+    const struct dig_effect *const known = dig_effect_of(effect);
+    return known != NULL && known->over_stiffness
+               ? pow(base_kgpm3 / density_kgpm3, plain->stiffness_power)
+               : 1.0;
+}
+
+// The magnitude that acts on a base as `magnitude` acts on the gravel, within the base's range.
+static double magnitude_at(const struct dig_curve_set *const plain, const struct base *const base,
+                           const enum dig_effect_id effect, const double magnitude,
+                           const struct dig_gravel *const gravel)
+{
+    const double scaled =
+        magnitude * dig_template_scale(plain, effect, base->gravel.value[DIG_AXIS_DENSITY_kgpm3],
+                                       gravel->value[DIG_AXIS_DENSITY_kgpm3]);
     double least = base->magnitude[0];
     double most  = base->magnitude[base->knots - 1];
     widen(effect, &least, &most);
@@ -261,8 +270,8 @@ enum dig_status dig_template_find(const struct dig_curve_set *const plain,
         if (!(chosen.weight[i] > 0.0)) {
             continue;
         }
-        const struct base *const at    = &base[chosen.knot[i]];
-        const struct between     knots = locate(at, magnitude_at(at, effect, magnitude, gravel));
+        const struct base *const at = &base[chosen.knot[i]];
+        const struct between knots = locate(at, magnitude_at(plain, at, effect, magnitude, gravel));
         for (int c = 0; c < DIG_CHANNELS; c++) {
             add_share(at, &knots, (enum dig_channel)c,
                       chosen.weight[i] * rms(&cell, (enum dig_channel)c), sum.delta[c],

@@ -6,7 +6,8 @@
 // gravel g the addition is amplitude(g) * share. Between magnitudes a share is piecewise linear
 // through "absent", where it is 0; between base gravels linear in their strength,
 // log(rms My / density), held beyond the weakest and strongest. Cohesion and adhesion act by their
-// ratio to the grains' weight, so their magnitude is scaled by base density / density first.
+// ratio to the stiffness of contacts (docs/numerics/dem.md, "Other laws"), so their magnitude is
+// scaled by dig_template_scale() first.
 
 #ifndef DIG_ESTIMATOR_EFFECTS_TEMPLATE_H
 #define DIG_ESTIMATOR_EFFECTS_TEMPLATE_H
@@ -31,6 +32,11 @@ struct dig_template {
 /// The magnitude at which an effect is absent: 1 for the ratios of polydispersity and grain_shape,
 /// 0 for all others.
 double dig_template_absent(enum dig_effect_id effect);
+
+/// What a magnitude in gravel of a density is times, so that it acts as at the base's: the
+/// stiffness of contacts there over that here where the effect acts over it, 1 for all others.
+double dig_template_scale(const struct dig_curve_set *plain, enum dig_effect_id effect,
+                          double base_kgpm3, double density_kgpm3);
 
 /// Range of magnitudes with a template along this trajectory, extrapolation included; false when
 /// the set has none. set NULL: false. O(entries).

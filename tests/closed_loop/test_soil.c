@@ -31,7 +31,7 @@ static struct dug dig_with(const struct dig_gravel *const gravel, const size_t t
 }
 
 // What the made world puts in at half its largest magnitude comes out, at a gravel that is none of
-// the bases; adhesion acts by its ratio to the grains' weight.
+// the bases.
 TEST(a_template_gives_back_what_was_put_in)
 {
     static const enum dig_effect_id effect[] = { DIG_EFFECT_COHESION, DIG_EFFECT_GROUND_SLOPE,

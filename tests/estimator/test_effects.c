@@ -106,9 +106,11 @@ TEST(templates_go_through_their_beds_and_straight_between)
     assert_close(share_at(w, DIG_EFFECT_COHESION, 3e4, &base[1]), 1.2, 1e-5);
     // A slope the other way goes on straight, half as far.
     assert_close(share_at(w, DIG_EFFECT_GROUND_SLOPE, -4.0, &base[1]), -0.2, 1e-5);
-    // Twice the density needs twice the cohesion.
+    // Contacts 1.6 times as stiff need 1.6 times the cohesion, be they so by the density or less.
     const struct dig_gravel heavy = { { 0.9, 1.0, 4000 } };
     assert_close(share_at(w, DIG_EFFECT_COHESION, 1.6e4, &heavy), 0.4, 1e-5);
+    w->plain->stiffness_power = 0.2;
+    assert_close(share_at(w, DIG_EFFECT_COHESION, 1e4 * pow(1.6, 0.2), &heavy), 0.4, 1e-5);
     // Between the bases by strength.
     const struct dig_gravel middle = { { 0.6, 0.55, 2500 } };
     const double            f =

@@ -1,5 +1,6 @@
 // Constants of the law, against the collisions they stand for.
 
+#include "core/contact.h"
 #include "tests/dem_fixture.h"
 
 #include "offline_dem/law/random.h"
@@ -23,6 +24,27 @@ TEST(the_spring_stores_what_hertz_stores)
     }
     const struct dig_law law = dig_law_wall(&m, GRAIN_m, GRAIN_kg);
     assert_close(0.5 * law.normal_Npm * x * x, 0.5 * GRAIN_kg * 4.0, 1e-3 * 0.5 * GRAIN_kg * 4.0);
+}
+
+// Of twice the density, resting under twice the load; by Hertz's spring where that bears it.
+TEST(contacts_of_heavier_gravel_are_stiffer_by_the_power_that_is_said)
+{
+    for (int k = 0; k < 4; k++) {
+        const enum dig_normal_law normal   = k % 2 == 0 ? DIG_NORMAL_HOOKE : DIG_NORMAL_HERTZ;
+        struct dig_material       material = { GRAIN_m, 5e6, 0.2, 0.2, 2.0, k < 2 ? 0.0 : 2500.0 };
+        double                    stiff_Npm[2];
+        for (int heavy = 0; heavy < 2; heavy++) {
+            const double times = heavy ? 2.0 : 1.0;
+            material.young_Pa  = k < 2 ? 5e6 : times * 5e6;
+            const double spring_Npm =
+                dig_contact_springs(&material, normal, GRAIN_m, times * GRAIN_kg).normal_Npm;
+            const double overlap_m = pow(times * GRAIN_kg * 9.81 / spring_Npm, 2.0 / 3.0);
+            stiff_Npm[heavy] =
+                normal == DIG_NORMAL_HOOKE ? spring_Npm : spring_Npm * sqrt(overlap_m);
+        }
+        assert_close(log2(stiff_Npm[1] / stiff_Npm[0]),
+                     dig_contact_stiffness_power(&material, normal), 1e-9);
+    }
 }
 
 TEST(two_like_grains_are_half_as_large_and_heavy_as_one_on_a_wall)

@@ -36,6 +36,7 @@ TEST_WITH(one_density_becomes_three, scratch_setup, scratch_teardown)
     assert_int_equal(set->entries, 6);
     assert_int_equal(set->axis_count[DIG_AXIS_DENSITY_kgpm3], 3);
     assert_int_equal(set->copies, 3);
+    assert_close(set->stiffness_power, 1.0, 0.0);
     static const double density_kgpm3[] = { 1500.0, 2500.0, 4000.0 };
     static const double my_Nm[]         = { 1.25, 4.0 };
     for (size_t i = 0; i < 6; i++) {

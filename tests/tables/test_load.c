@@ -27,6 +27,7 @@ TEST(the_head_is_that_of_the_scene)
     assert_close(set->bucket_width_m, 0.07, 0.0);
     assert_close(set->young_Pa, 5e6, 0.0);
     assert_close(set->smooth_half_s, 0.16, 0.0);
+    assert_close(set->stiffness_power, 0.2, 0.0);
     assert_int_equal(set->trajectories, 2);
     for (size_t t = 0; t < 2; t++) {
         const struct dig_trajectory *const a = &set->trajectory[t], *const b = &scene.trajectory[t];
