@@ -1,6 +1,7 @@
 #!/bin/bash
-# What `digloop trace` says of digs of another code: every LIGGGHTS gravel of a folder as a campaign, its first
-# simple dig to identify, its last real dig held out where it has three beds or more. A line a campaign, intervals of
+# What `digloop trace` says of digs of another code: every gravel of a folder as a campaign, of each bed its simpleA and its
+# actual, or its simpleB where it has no actual. The first simple dig identifies, the last real dig is held out where there
+# are three beds or more. A line a campaign, intervals of
 # 90 %; bed: how far off the other beds' real digs would be, in the mean, as the prediction of the one held out. The right
 # verdict of plain gravel, and so of tests/data/reference, is none.
 #   BIN=build/bin scripts/trace_reference.sh [TABLE.sqlite [FOLDER]]
@@ -29,7 +30,8 @@ printf '%-32s %4s  %-19s %-18s %-16s %-16s %-17s %8s %6s %6s %6s %6s\n' gravel d
 for gravel in $(cd "$here" && printf '%s\n' *rho*__simpleA.csv | sed -E 's/(_seed[0-9]+)?__simpleA.csv//' | sort -u); do
     beds=()
     for simple in "$here/$gravel"{,_seed*}__simpleA.csv; do
-        [ ! -e "${simple%simpleA.csv}actual.csv" ] || beds+=("${simple%__simpleA.csv}")
+        bed=${simple%__simpleA.csv}
+        if [ -e "${bed}__actual.csv" ] || [ -e "${bed}__simpleB.csv" ]; then beds+=("$bed"); fi
     done
     [ "${#beds[@]}" -gt 0 ] || continue
     {
@@ -40,7 +42,9 @@ for gravel in $(cd "$here" && printf '%s\n' *rho*__simpleA.csv | sed -E 's/(_see
             held=fit
             [ "${#beds[@]}" -ge 3 ] && [ "$i" = $((${#beds[@]} - 1)) ] && held=holdout
             echo "  - {file: ${beds[$i]}__simpleA.csv, trajectory: simpleA, role: $role}"
-            echo "  - {file: ${beds[$i]}__actual.csv, trajectory: actual, role: $held}"
+            other=actual
+            [ -e "${beds[$i]}__actual.csv" ] || other=simpleB
+            echo "  - {file: ${beds[$i]}__$other.csv, trajectory: $other, role: $held}"
             role=fit
         done
     } >"$work/campaign.yaml"
