@@ -1,9 +1,8 @@
 #!/bin/bash
 # What `digloop trace` says of digs of another code: every gravel of a folder as a campaign, of each bed its simpleA and its
-# actual, or its simpleB where it has no actual. The first simple dig identifies, the last real dig is held out where there
-# are three beds or more. A line a campaign, intervals of
-# 90 %; bed: how far off the other beds' real digs would be, in the mean, as the prediction of the one held out. The right
-# verdict of plain gravel, and so of tests/data/reference, is none.
+# actual, or its simpleB where it has no actual. The first simple dig identifies, the last real dig is held out where it has
+# three beds or more. A line a campaign, intervals of 90 %; bed: how far off the other beds' real digs would be, in the mean,
+# as the prediction of the one held out. The right verdict of plain gravel, and so of tests/data/reference, is none.
 #   BIN=build/bin scripts/trace_reference.sh [TABLE.sqlite [FOLDER]]
 set -eu
 bin=${BIN:-build/bin} table=${1:-tables/reference_rig.sqlite} data=${2:-tests/data/reference}
