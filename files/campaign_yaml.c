@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static const cyaml_strval_t roles[] = {
     { "identify", DIG_ROLE_IDENTIFY },
@@ -115,7 +116,10 @@ enum dig_status dig_campaign_read(const char *const folder, struct dig_campaign 
                                   struct dig_error *const error)
 {
     assert(folder != NULL);
-
+    if (access(folder, F_OK) == 0 && !dig_campaign_is(folder)) {
+        return dig_error_set(error, DIG_EINVAL, "%s: expected a folder with a campaign.yaml",
+                             folder);
+    }
     char      yaml[DIG_CAMPAIGN_PATH];
     const int length = snprintf(yaml, sizeof yaml, "%s/campaign.yaml", folder);
     if (length < 0 || (size_t)length >= sizeof yaml) {

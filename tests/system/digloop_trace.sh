@@ -192,6 +192,7 @@ check "a dig along another trajectory is named" refuses "swapped/campaign.yaml:3
 campaign nowhere rig "$A$S" sideways identify "$A$R" actual fit
 check "a trajectory that the table lacks is named" refuses "nowhere/campaign.yaml:3: recordings[0].trajectory: \"sideways\", expected one of the table's: simpleA, simpleB, actual" -- traced "$work/nowhere"
 campaign gone rig none.csv simpleA identify "$A$R" actual fit
+check "a recording in place of a folder is named" refuses "gone/campaign.yaml: expected a folder with a campaign.yaml" -- traced "$work/gone/campaign.yaml"
 check "a missing recording is named" refuses "file: $work/gone/none.csv: No such file" "campaign.yaml:" -- traced "$work/gone"
 sed -i 1d "$work/gone/campaign.yaml"
 echo "scene: none.yaml" >>"$work/gone/campaign.yaml"
