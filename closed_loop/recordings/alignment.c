@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdbool.h>
 
 // Of the tooth's length: what the path's sensors may scatter by.
 static const double vertex_share = 0.01;
@@ -13,7 +12,17 @@ static const double vertex_share = 0.01;
 static const double whole_off = 0.002;
 
 // Most that either end may lack, or have beyond the trajectory's.
-static const double most_missing = 0.2;
+static const double most_missing = 0.3;
+
+// Most that either end is looked for to lack: a part that is no longer searched for would be taken
+// for the largest that is.
+static const double most_searched = 0.5;
+
+bool dig_alignment_lacks_too_much(const struct dig_alignment_part *const part)
+{
+    assert(part != NULL);
+    return part->from > most_missing || part->to < 1.0 - most_missing;
+}
 
 static double step_m(const struct dig_force_row *const a, const struct dig_force_row *const b,
                      const double tooth_m)
@@ -127,10 +136,11 @@ static void move_end(const struct dig_recording *const recording, const double p
                      const struct dig_alignment_target *const target, const bool is_from,
                      struct dig_alignment_part *const best)
 {
-    enum { STEPS = 40, ROUNDS = 4 };
-    const double whole = is_from ? 0.0 : 1.0;
-    double       low   = whole - most_missing;
-    double       high  = whole + most_missing;
+    enum { STEPS = 60, ROUNDS = 4 };
+    const double least = is_from ? -most_missing : 1.0 - most_searched;
+    const double most  = is_from ? most_searched : 1.0 + most_missing;
+    double       low   = least;
+    double       high  = most;
     for (int round = 0; round < ROUNDS; round++) {
         const double step = (high - low) / STEPS;
         for (int k = 0; k <= STEPS; k++) {
@@ -140,8 +150,8 @@ static void move_end(const struct dig_recording *const recording, const double p
             *best = tried.off < best->off ? tried : *best;
         }
         const double at = is_from ? best->from : best->to;
-        low             = fmax(at - step, is_from ? 0.0 : 1.0 - most_missing);
-        high            = fmin(at + step, is_from ? most_missing : 1.0);
+        low             = fmax(at - step, least);
+        high            = fmin(at + step, most);
     }
 }
 

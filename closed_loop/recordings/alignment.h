@@ -7,6 +7,7 @@
 #include "core/curve.h"
 #include "core/recording.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /// What a recording is aligned with: a trajectory, against which the bucket may be turned by so
@@ -24,6 +25,9 @@ struct dig_alignment_part {
     double off;        // rms, in bucket lengths
     double turned_rad; // of the bucket against the trajectory, positive curls
 };
+
+/// Whether it lacks more than three tenths of the trajectory at either end: too little of a dig.
+bool dig_alignment_lacks_too_much(const struct dig_alignment_part *part);
 
 /// Writes the path travelled up to each row as a fraction of the recording's whole; returns that
 /// whole, m: the pin's way and the tooth's about it. Motions within a hundredth of the tooth's
@@ -52,8 +56,8 @@ void dig_alignment_compare(const struct dig_recording *recording, const double p
                            const struct dig_alignment_target *target,
                            struct dig_alignment_part         *part);
 
-/// Finds which part of the trajectory's path was recorded, at least six tenths of it, or what of
-/// the recording lies beyond it: all of it and no more, unless that comes twice as near.
+/// Finds which part of the trajectory's path was recorded, or what of the recording lies beyond it:
+/// all of it and no more, unless that comes twice as near. It may be a part that lacks too much.
 struct dig_alignment_part dig_alignment_align(const struct dig_recording        *recording,
                                               const double                       progress[],
                                               const struct dig_alignment_target *target);

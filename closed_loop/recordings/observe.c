@@ -163,6 +163,7 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                                        struct dig_error *const          error)
 {
     int    best  = -1;
+    int    cut   = -1;
     double least = INFINITY;
     *best_part   = (struct dig_alignment_part){ .to = 1.0, .off = (double)INFINITY };
     for (size_t t = 0; t < set->trajectories; t++) {
@@ -180,13 +181,20 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
             made.attack_rad = part.turned_rad;
         }
         const double score = hypot(part.off, turn_share * made.attack_rad);
-        if (score < least) {
+        if (dig_alignment_lacks_too_much(&part)) {
+            cut = part.off <= DIG_OBSERVE_PATH_LIMIT ? (int)t : cut;
+        } else if (score < least) {
             least              = score;
             best               = (int)t;
             *best_part         = part;
             observed->made     = made;
             observed->approach = approach;
         }
+    }
+    if (cut >= 0 && !(best_part->off <= DIG_OBSERVE_PATH_LIMIT)) {
+        return dig_error_set(error, DIG_ENOMATCH,
+                             "the recording lacks more than three tenths of \"%s\" at an end",
+                             set->trajectory[cut].name);
     }
     if (best < 0 || !(best_part->off <= DIG_OBSERVE_PATH_LIMIT)) {
         return dig_error_set(error, DIG_ENOMATCH,

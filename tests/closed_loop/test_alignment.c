@@ -98,6 +98,22 @@ TEST(what_a_recording_lacks_is_told_by_the_poses)
     expect_part(0.2, 2.6, &clean, 0.004);
     expect_part(0.15, 2.3, &clean, 0.004);
     expect_part(0.15, 2.3, &real, 0.015);
+    expect_part(0.0, 1.9, &clean, 0.004);
+    expect_part(0.0, 1.5, &clean, 0.004);
+    expect_part(0.5, 2.6, &clean, 0.004);
+}
+
+// What lacks more than is looked for is not taken for the most that may be lacking.
+TEST(too_much_lacking_is_told)
+{
+    static const double to_s[] = { 2.4, 1.9, 1.5 };
+    for (int i = 0; i < 3; i++) {
+        struct dig_recording r = drive(0.0, to_s[i], 200.0, &real);
+        (void)dig_alignment_progress(&r, TOOTH_m, progress);
+        const struct dig_alignment_part part = dig_alignment_align(&r, progress, &still);
+        assert_int_equal(dig_alignment_lacks_too_much(&part), way_m(to_s[i]) < 0.7 * way_m(2.6));
+        dig_recording_finish(&r);
+    }
 }
 
 // A path that is no part of the trajectory's is compared with all of it.

@@ -201,6 +201,17 @@ campaign machine rig "$PWD/tests/data/formats/machine_recording.csv" simpleA ide
 check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- traced "$work/machine"
 sed 's/^scene/machine: none.yaml\n&/' "$work/machine/campaign.yaml" >"$work/m" && mv "$work/m" "$work/machine/campaign.yaml"
 check "a machine that is not there is named" refuses "machine: $work/machine/none.yaml: No such file" "campaign.yaml:" -- traced "$work/machine"
+
+# A recording may end before its dig does.
+until_s() { awk -F, -v end="$2" 'NR == 1 || $1 <= end' "$1" >"$3"; } # RECORDING SECONDS OUT
+until_s "$PWD/tests/data/reference/mu0.9_mur0.9_rho2500_seed3$S" 2.5 "$work/short.csv"
+campaign short rig "$work/short.csv" simpleA identify "$PWD/tests/data/reference/mu0.9_mur0.9_rho2500_seed3$R" actual fit
+"$BIN/digloop" trace "$table" "$work/short" -q --json "$work/short.json"
+check "nothing is missing in a dig that ends before its bucket is out" grep -q '"verdict": \["none"\]' "$work/short.json"
+until_s "$work/short.csv" 2 "$work/shorter.csv"
+campaign shorter rig "$work/shorter.csv" simpleA identify "$PWD/tests/data/reference/mu0.9_mur0.9_rho2500_seed3$R" actual fit
+check "one that lacks more is refused" refuses 'shorter.csv: the recording lacks more than three tenths of "simpleA" at an end' -- traced "$work/shorter"
+
 check "a folder without a campaign is named" refuses "$work/campaign.yaml: No such file" -- traced "$work"
 check "so is a folder that is not there" refuses "nothing/campaign.yaml: No such file" -- traced "$work/nothing"
 "$BIN/digloop" trace "$table" "$work/plain" --effects "$work/none.sqlite" >/dev/null 2>"$work/err"
