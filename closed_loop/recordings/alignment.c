@@ -15,8 +15,8 @@ static const double whole_off = 0.002;
 static const double most_missing = 0.3;
 
 // Most that either end is looked for to lack: a part that is no longer searched for would be taken
-// for the largest that is.
-static const double most_searched = 0.5;
+// for the largest that is. Both ends leave a path between them: a point is like any.
+static const double most_searched = 0.45;
 
 bool dig_alignment_lacks_too_much(const struct dig_alignment_part *const part)
 {

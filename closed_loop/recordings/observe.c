@@ -13,6 +13,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -155,6 +156,25 @@ static bool read_channel(const struct dig_recording *const recording, const stru
     return told;
 }
 
+// A path of which one trajectory may be the nearest, and another have too short a part alike it.
+static enum dig_status refuse_path(const struct dig_curve_set *const set, const int nearest,
+                                   const double off, const int cut, struct dig_error *const error)
+{
+    char lacks[DIG_NAME_SIZE + 64] = "";
+    char away[DIG_NAME_SIZE + 64]  = "";
+    if (cut >= 0) {
+        (void)snprintf(lacks, sizeof lacks, "; it lacks more than three tenths of \"%s\" at an end",
+                       set->trajectory[cut].name);
+    }
+    if (nearest >= 0) {
+        (void)snprintf(away, sizeof away,
+                       ": nearest is \"%s\", %.3f bucket lengths away, expected at most %.2f",
+                       set->trajectory[nearest].name, off, DIG_OBSERVE_PATH_LIMIT);
+    }
+    return dig_error_set(error, DIG_ENOMATCH, "the recording's path is none of the table's%s%s",
+                         away, lacks);
+}
+
 static enum dig_status find_trajectory(const struct dig_curve_set *const set,
                                        const struct dig_recording *const recording,
                                        const struct columns *const c, const bool as_dug,
@@ -191,17 +211,8 @@ static enum dig_status find_trajectory(const struct dig_curve_set *const set,
             observed->approach = approach;
         }
     }
-    if (cut >= 0 && !(best_part->off <= DIG_OBSERVE_PATH_LIMIT)) {
-        return dig_error_set(error, DIG_ENOMATCH,
-                             "the recording lacks more than three tenths of \"%s\" at an end",
-                             set->trajectory[cut].name);
-    }
     if (best < 0 || !(best_part->off <= DIG_OBSERVE_PATH_LIMIT)) {
-        return dig_error_set(error, DIG_ENOMATCH,
-                             "the recording's path is none of the table's: nearest is \"%s\", "
-                             "%.3f bucket lengths away, expected at most %.2f",
-                             best < 0 ? "" : set->trajectory[best].name, best_part->off,
-                             DIG_OBSERVE_PATH_LIMIT);
+        return refuse_path(set, best, best_part->off, cut, error);
     }
     observed->trajectory = best;
     observed->off_path_m = best_part->off * set->tooth_m;

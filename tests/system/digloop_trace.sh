@@ -210,7 +210,7 @@ campaign short rig "$work/short.csv" simpleA identify "$PWD/tests/data/reference
 check "nothing is missing in a dig that ends before its bucket is out" grep -q '"verdict": \["none"\]' "$work/short.json"
 until_s "$work/short.csv" 2 "$work/shorter.csv"
 campaign shorter rig "$work/shorter.csv" simpleA identify "$PWD/tests/data/reference/mu0.9_mur0.9_rho2500_seed3$R" actual fit
-check "one that lacks more is refused" refuses 'shorter.csv: the recording lacks more than three tenths of "simpleA" at an end' -- traced "$work/shorter"
+check "one that lacks more is refused" refuses "shorter.csv: the recording's path is none of the table's" 'it lacks more than three tenths of "simpleA" at an end' -- traced "$work/shorter"
 
 check "a folder without a campaign is named" refuses "$work/campaign.yaml: No such file" -- traced "$work"
 check "so is a folder that is not there" refuses "nothing/campaign.yaml: No such file" -- traced "$work/nothing"
