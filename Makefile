@@ -226,11 +226,11 @@ ASAN_FLAGS := -O1 -g1 -DDIG_KERNEL_BASE -fsanitize=address,undefined -fno-saniti
 statistics := $(foreach t,approaches_shipped coverage design_shipped effect_noise_shipped \
                 few_packings layers_shipped noise_shipped pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
 check-asan: ## The unit tests under AddressSanitizer and UBSan
-	$(Q)$(sanitized) BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
+	+$(Q)$(sanitized) BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)"
 
 check-tsan: ## The threaded units under ThreadSanitizer, built with what they include
-	$(Q)$(sanitized) BUILD=$(BUILD)/tsan tested="$(threaded_tests)" modules="$(threaded)" \
+	+$(Q)$(sanitized) BUILD=$(BUILD)/tsan tested="$(threaded_tests)" modules="$(threaded)" \
 	    CFLAGS="-O1 -g1 -fsanitize=thread"
 
 check-valgrind: $(test_bins) ## The unit tests under memcheck
