@@ -144,4 +144,26 @@ TEST(intervals_of_the_gravel_hold)
     assert_true((double)held >= 0.75 * (double)(grounds * DIG_AXES));
 }
 
+// Along what the axes change of a dig, left-out packings exceed the pooled covariance.
+TEST(beds_scatter_more_as_gravels_do)
+{
+    static const char *const           table[] = { RIG, PRODUCT };
+    static struct dig_response_surface fitted;
+    for (size_t i = 0; i < 2; i++) {
+        struct dig_curve_set *loaded = NULL;
+        struct dig_scatter   *pooled = NULL;
+        struct dig_error      error  = { "" };
+        assert_ok(dig_table_load(table[i], &loaded, &error), error);
+        assert_int_equal(dig_response_surface_fit(loaded, &fitted), DIG_OK);
+        assert_ok(dig_scatter_measure(table[i], &fitted, &pooled, &error), error);
+        for (size_t t = 0; t < loaded->trajectories; t++) {
+            print_message("%s: beds along %s, as gravels differ: %.2f times\n", table[i],
+                          loaded->trajectory[t].name, 1.0 + pooled->as_gravels[t]);
+            assert_true(pooled->as_gravels[t] > 0.05);
+        }
+        dig_scatter_destroy(pooled);
+        dig_curve_set_destroy(loaded);
+    }
+}
+
 TESTS_WITH(setup, shipped_teardown)
