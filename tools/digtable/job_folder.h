@@ -13,11 +13,10 @@
 
 #include "core/error.h"
 #include "files/job_plan.h"
-#include "offline_dem/sweep/sweep.h"
-#include "tables/queue.h"
 
 #include <limits.h>
-#include <stdbool.h>
+#include <signal.h>
+#include <stddef.h>
 
 #define DIG_JOB_MERGE 0 // in place of a shard's number
 
@@ -28,33 +27,21 @@ struct dig_job_folder {
     struct dig_job_plan plan;
 };
 
-/// What is planned: scene_path and grid_path read, the plan in one part, and its engine.
-struct dig_job_wanted {
-    const char              *scene_path, *grid_path;
-    const struct dig_scene  *scene;
-    const struct dig_plan   *plan;
-    const struct dig_engine *engine;
-    size_t                   packings; // over the grid's; 0: the grid's
-    size_t                   tasks;    // 0: as planned, or the default
-};
-
-/// Locks the folder of a table and plans what is wanted; where that was done before, checks that it
-/// was the same. Waits where another process has the lock, and says so, until *stop. DIG_EINVAL: a
-/// plan that differs, a name that is refused, a folder or a table in the way. Close it.
-DIG_MUST_CHECK enum dig_status dig_job_folder_plan(const char                  *table,
-                                                   const struct dig_job_wanted *wanted,
+/// Makes the folder of a table where there is none, without a plan, and locks it. Waits where
+/// another process has the lock, and says so, until *stop. DIG_EINVAL: a name that is refused, or
+/// something else in the way. Close it.
+DIG_MUST_CHECK enum dig_status dig_job_folder_make(const char                  *table,
                                                    const volatile sig_atomic_t *stop,
                                                    struct dig_job_folder       *folder,
                                                    struct dig_error            *error);
 
+/// Makes the folders in it that are not there.
+DIG_MUST_CHECK enum dig_status dig_job_folder_make_rooms(const struct dig_job_folder *folder,
+                                                         struct dig_error            *error);
+
 /// The folder, or that of a table, to look at.
 DIG_MUST_CHECK enum dig_status dig_job_folder_open(const char *path, struct dig_job_folder *folder,
                                                    struct dig_error *error);
-
-/// Writes run.sh, which a shell reads, a laptop's as well as Slurm's: anew for each submit, as
-/// programs move; whole or not at all. packings: see dig_job_wanted.
-DIG_MUST_CHECK enum dig_status dig_job_script_write(const struct dig_job_folder *folder,
-                                                    size_t packings, struct dig_error *error);
 
 /// Lets go of the lock; harmless without.
 void dig_job_folder_close(struct dig_job_folder *folder);

@@ -2,7 +2,7 @@
 
 #include "core/shell.h"
 #include "files/text/whole.h"
-#include "tools/digtable/job_folder.h"
+#include "tools/digtable/job_planning.h"
 
 #include <errno.h>
 #include <stdio.h>

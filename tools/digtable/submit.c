@@ -4,7 +4,7 @@
 #include "core/process.h"
 #include "core/text.h"
 #include "tools/digtable/commands.h"
-#include "tools/digtable/job_folder.h"
+#include "tools/digtable/job_planning.h"
 #include "tools/digtable/job_state.h"
 #include "tools/digtable/plan.h"
 #include "tools/digtable/slurm.h"
@@ -183,7 +183,7 @@ static enum dig_status submit(const struct dig_arguments *const  a,
 {
     enum dig_status status = a->slurm ? dig_slurm_check(error) : DIG_OK;
     if (status == DIG_OK) {
-        status = dig_job_folder_plan(a->output, wanted, a->stop, &s->folder, error);
+        status = dig_job_plan_folder(a->output, wanted, a->stop, &s->folder, error);
     }
     if (status == DIG_OK) {
         status = dig_job_script_write(&s->folder, wanted->packings, error);
