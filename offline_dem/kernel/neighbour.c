@@ -1,5 +1,6 @@
 #include "offline_dem/kernel/neighbour.h"
 
+#include "offline_dem/kernel/cell_grid.h"
 #include "offline_dem/kernel/crew.h"
 
 #include <math.h>
@@ -11,139 +12,6 @@
 // GCC 12's analyzer loses sight of what a member of a crew has found.
 #pragma GCC diagnostic ignored "-Wanalyzer-malloc-leak"
 #endif
-
-// A box of cells around all grains. The number of cells is bounded whatever the spread of the
-// grains: a grain thrown far away makes cells larger, not memory.
-struct grid {
-    double    low_m[3];
-    double    cell_m;
-    ptrdiff_t count[3];
-    int axis[3]; // rows of cells run along axis[0]: the shortest, so that what is near in space
-                 // is near in memory
-    size_t    cells;
-    uint32_t *start;  // [cells + 1]
-    uint32_t *member; // [n], cell by cell
-};
-
-#define CELLS_PER_GRAIN 8
-
-static ptrdiff_t clamp_cell(const struct grid *const g, const int axis, const double x_m)
-{
-    const double c = (x_m - g->low_m[axis]) / g->cell_m;
-    if (!(c >= 1.0)) {
-        return 0;
-    }
-    return c < (double)g->count[axis] ? (ptrdiff_t)c : g->count[axis] - 1;
-}
-
-static size_t cell_of(const struct grid *const g, const double x_m[])
-{
-    const int       a  = g->axis[0];
-    const int       b  = g->axis[1];
-    const int       c  = g->axis[2];
-    const ptrdiff_t ia = clamp_cell(g, a, x_m[a]);
-    const ptrdiff_t ib = clamp_cell(g, b, x_m[b]);
-    const ptrdiff_t ic = clamp_cell(g, c, x_m[c]);
-    return (size_t)(ia + g->count[a] * (ib + g->count[b] * ic));
-}
-
-static void size_grid(const struct dig_grains *const grains, struct grid *const g)
-{
-    double high_m[3] = { -INFINITY, -INFINITY, -INFINITY };
-    for (int a = 0; a < 3; a++) {
-        g->low_m[a] = INFINITY;
-    }
-    for (size_t i = 0; i < grains->n; i++) {
-        for (int a = 0; a < 3; a++) {
-            g->low_m[a] = fmin(g->low_m[a], grains->motion[i].x_m[a]);
-            high_m[a]   = fmax(high_m[a], grains->motion[i].x_m[a]);
-        }
-    }
-    const double most = (double)(CELLS_PER_GRAIN * grains->n + 64);
-    for (;;) {
-        double cells = 1.0;
-        for (int a = 0; a < 3; a++) {
-            const double c = floor((high_m[a] - g->low_m[a]) / g->cell_m) + 1.0;
-            g->count[a]    = c < most ? (ptrdiff_t)c : (ptrdiff_t)most;
-            cells *= c;
-        }
-        if (!(cells > most)) {
-            break;
-        }
-        g->cell_m *= 1.5;
-    }
-    g->cells = (size_t)(g->count[0] * g->count[1] * g->count[2]);
-    for (int a = 0; a < 3; a++) {
-        int shorter = 0;
-        for (int b = 0; b < 3; b++) {
-            shorter += g->count[b] < g->count[a] || (g->count[b] == g->count[a] && b < a);
-        }
-        g->axis[shorter] = a;
-    }
-}
-
-// The cells of grains, which a crew tells.
-struct cells {
-    const struct dig_grains *grains;
-    const struct grid       *grid;
-    uint32_t                *of; // [n]
-};
-
-static void tell_cells(void *const context, const size_t first, const size_t end)
-{
-    const struct cells *const c = context;
-    for (size_t i = first; i < end; i++) {
-        c->of[i] = (uint32_t)cell_of(c->grid, c->grains->motion[i].x_m);
-    }
-}
-
-static enum dig_status fill_grid(const struct dig_grains *const grains, const double cell_m,
-                                 struct dig_crew *const crew, struct grid *const g)
-{
-    const size_t n = grains->n;
-    g->cell_m      = cell_m;
-    size_grid(grains, g);
-    g->start             = calloc(g->cells + 2, sizeof *g->start);
-    g->member            = calloc(n + 1, sizeof *g->member);
-    uint32_t *const cell = malloc((n + 1) * sizeof *cell);
-    if (g->start == NULL || g->member == NULL || cell == NULL) {
-        free(g->start);
-        free(g->member);
-        free(cell);
-        return DIG_ENOMEM;
-    }
-    struct cells cells = { grains, g, cell };
-    dig_crew_each(crew, n, tell_cells, &cells);
-    for (size_t i = 0; i < n; i++) {
-        g->start[cell[i] + 2]++;
-    }
-    for (size_t c = 2; c < g->cells + 2; c++) {
-        g->start[c] += g->start[c - 1];
-    }
-    // start[c + 1] runs ahead while cell c is filled and ends where cell c + 1 begins.
-    for (size_t i = 0; i < n; i++) {
-        g->member[g->start[cell[i] + 1]++] = (uint32_t)i;
-    }
-    free(cell);
-    return DIG_OK;
-}
-
-enum dig_status dig_neighbours_sort(const struct dig_grains *const grains, const double cell_m,
-                                    struct dig_crew *const crew, uint32_t order[])
-{
-    if (grains->n == 0) {
-        return DIG_OK;
-    }
-    struct grid           g;
-    const enum dig_status status = fill_grid(grains, cell_m, crew, &g);
-    if (status != DIG_OK) {
-        return status;
-    }
-    memcpy(order, g.member, grains->n * sizeof *order);
-    free(g.start);
-    free(g.member);
-    return DIG_OK;
-}
 
 // The pairs that one member of a crew has found.
 struct finds {
@@ -208,7 +76,7 @@ static bool is_listed(const struct query *const q, const struct cell_grain *cons
 }
 
 // Appends the pairs of the query's grain.
-static enum dig_status search(const struct query *const q, const struct grid *const g,
+static enum dig_status search(const struct query *const q, const struct dig_cell_grid *const g,
                               struct finds *const finds)
 {
     const double *const x     = q->x_m;
@@ -218,8 +86,8 @@ static enum dig_status search(const struct query *const q, const struct grid *co
     ptrdiff_t           low[3];
     ptrdiff_t           high[3];
     for (int a = 0; a < 3; a++) {
-        low[a]  = clamp_cell(g, a, x[a] - far_m);
-        high[a] = clamp_cell(g, a, x[a] + far_m);
+        low[a]  = dig_cell_grid_along(g, a, x[a] - far_m);
+        high[a] = dig_cell_grid_along(g, a, x[a] + far_m);
     }
     const int a = g->axis[0];
     const int b = g->axis[1];
@@ -248,7 +116,7 @@ static enum dig_status search(const struct query *const q, const struct grid *co
 }
 
 // Searches around the grain, and around its images where y is periodic.
-static enum dig_status search_images(struct query *const q, const struct grid *const g,
+static enum dig_status search_images(struct query *const q, const struct dig_cell_grid *const g,
                                      const double period_m, struct finds *const finds)
 {
     memcpy(q->x_m, q->own.x_m, sizeof q->x_m);
@@ -265,7 +133,7 @@ struct shared_search {
     const struct dig_grains *grains;
     const double            *margin_m;
     double                   period_m, radius_max_m;
-    struct grid              grid;
+    struct dig_cell_grid     grid;
     struct cell_grain       *cell_grain; // [n] in the order of the grid's members
     struct dig_crew         *crew;
     struct finds            *finds; // [members]
@@ -385,7 +253,7 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         .list         = list,
     };
     enum dig_status status =
-        fill_grid(grains, 2.0 * (radius_max_m + margin_min_m), crew, &search.grid);
+        dig_cell_grid_fill(grains, 2.0 * (radius_max_m + margin_min_m), crew, &search.grid);
     if (status == DIG_OK) {
         search.cell_grain = malloc((n + 1) * sizeof *search.cell_grain);
         if (search.cell_grain == NULL) {
@@ -395,8 +263,7 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
             status = find_pairs(&search);
         }
         free(search.cell_grain);
-        free(search.grid.start);
-        free(search.grid.member);
+        dig_cell_grid_finish(&search.grid);
     }
     if (status != DIG_OK) {
         dig_neighbours_finish(list);

@@ -24,12 +24,6 @@ struct dig_neighbours {
     double (*reference_m)[4]; // [n] position when the list was made, and the margin
 };
 
-/// Sorts the grains along the cells of a grid of edge cell_m, rows of cells along the shortest
-/// axis: grain order[k] belongs at index k. Stable. The crew (NULL: the caller alone) shares the
-/// work. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_neighbours_sort(const struct dig_grains *grains, double cell_m,
-                                                   struct dig_crew *crew, uint32_t order[]);
-
 /// Lists every pair once, but not those within a clump, under the grain with the larger margin (on
 /// a tie the lower index). margin_m[i] > 0 for every grain. *list is zeroed or was filled by this
 /// function, which reuses its memory. A crew shares the search, NULL: the caller alone; the list is

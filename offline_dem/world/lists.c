@@ -1,5 +1,6 @@
 #include "offline_dem/world/lists.h"
 
+#include "offline_dem/kernel/cell_grid.h"
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/period.h"
 #include "offline_dem/world/bodies.h"
@@ -118,7 +119,7 @@ static enum dig_status rebuild(struct rebuild *const r)
         radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
     wrap(w);
-    enum dig_status status = dig_neighbours_sort(
+    enum dig_status status = dig_cell_grid_sort(
         &w->grains, (w->single ? SORT_RADII_SINGLE : SORT_RADII) * radius_max_m, w->crew, r->order);
     status = status == DIG_OK ? dig_grains_reorder(&w->grains, r->order, w->crew) : status;
     if (status != DIG_OK) {

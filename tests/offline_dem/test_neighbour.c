@@ -1,5 +1,6 @@
 // The neighbour list against looking at every pair.
 
+#include "offline_dem/kernel/cell_grid.h"
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/kernel/neighbour.h"
 #include "offline_dem/law/random.h"
@@ -138,7 +139,7 @@ TEST(the_order_is_a_permutation_along_the_cells)
     struct scatter s = make_scatter(3);
     uint32_t       order[GRAINS];
     bool           seen[GRAINS] = { false };
-    assert_int_equal(dig_neighbours_sort(&s.grains, 0.01, NULL, order), DIG_OK);
+    assert_int_equal(dig_cell_grid_sort(&s.grains, 0.01, NULL, order), DIG_OK);
     double path_m = 0.0, unsorted_m = 0.0;
     for (size_t k = 0; k < GRAINS; k++) {
         assert_true(order[k] < GRAINS);
