@@ -20,7 +20,8 @@ no lead over what has no name (15: 0)|closed_loop/search/search_which.c|s/least_
 an effect need not be enough|closed_loop/search/search_which.c|s/dig_search_evidence(c, &with, 0) - DIG/-1e9 - DIG/|6
 any lead names (6: 0)|closed_loop/search/search_work.h|s/TOLD_APART 6.0/TOLD_APART 0.0/|0
 left-out digs do not confirm|closed_loop/search/search_which.c|s/c->s->confirmed < 0.0/false/|77
-a drift may bend|closed_loop/search/search_which.c|s/most_bent = 2.576/most_bent = 1e9/|127
+a drift may bend|closed_loop/search/search_which.c|s/by_a_bend = 0.5/by_a_bend = 1e9/|10
+wear leads digs that are alike alone (3: none)|closed_loop/search/drift.c|s/ - none;/ - none + 1e9;/|140
 no rock elsewhere|closed_loop/search/search_which.c|s/lead >= DIG_SEARCH_TOLD_APART/false \&\& lead >= DIG_SEARCH_TOLD_APART/|330
 no second effect|closed_loop/search/search_which.c|s/if (find_pair(c, &pair))/if (false \&\& find_pair(c, \&pair))/|90
 no gravel outside the grid|closed_loop/search/search.c|s/search->outside = !search->is_rock/search->outside = false \&\& !search->is_rock/|25

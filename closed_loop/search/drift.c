@@ -2,19 +2,17 @@
 // next.
 //
 // Of every dig the size that it has over the gravel's without wear, f = <y, m> / <m, m>, with a
-// variance of 1 / <m, m>, is fitted by a parabola in the digs' order, and by a number of its own
-// for every trajectory, for whatever its digs share. A strength that grows and comes to rest, or
-// steps once, is a drift, too, but of something else than a tooth, and a line through it overshoots
-// the next dig.
+// variance of 1 / <m, m>, is fitted by a line in the digs' order, by a parabola, and by sizes in no
+// order, whose variance is whatever they have; each with a number of its own for every trajectory,
+// for whatever its digs share. A strength that grows and comes to rest, or steps once, is a drift,
+// too, but of something else than a tooth, and a line through it overshoots the next dig. Where one
+// dig is deeper, or of another gravel, a line leads nothing but digs that are all alike.
 
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/search/search_work.h"
 
 #include <assert.h>
 #include <math.h>
-
-// Digs that tell a parabola from their scatter at all.
-static const size_t least_digs = 5;
 
 enum { ORDER, SQUARE, SIZE, COLUMNS };
 
@@ -64,31 +62,54 @@ static void take_off(const size_t digs, const double other[], double column[])
     }
 }
 
-double dig_drift_bend(const struct dig_whitened_digs *const batch,
-                      const struct dig_fitted *const        fitted)
+// Leaves of all columns what is not a number of its own for every trajectory.
+static void take_off_groups(const struct dig_whitened_digs *const batch,
+                            struct columns *const                 columns)
 {
-    assert(batch != NULL && fitted != NULL);
-    const struct dig_hypothesis *const by = &fitted->hypothesis;
-    const size_t   wear = dig_effect_place(by->effects, by->effect, DIG_EFFECT_WEAR);
-    struct columns columns;
-    if (wear == by->effects || batch->digs < least_digs) {
-        return 0.0;
-    }
-    measure(batch, fitted, wear, &columns);
     for (size_t g = 0; g < batch->groups; g++) {
         double one[DIG_MEASURED_MAX];
         for (size_t i = 0; i < batch->digs; i++) {
-            one[i] = batch->dig[i].group == g ? columns.weight[i] : 0.0;
+            one[i] = batch->dig[i].group == g ? columns->weight[i] : 0.0;
         }
         for (size_t c = 0; c < COLUMNS; c++) {
-            take_off(batch->digs, one, columns.of[c]);
+            take_off(batch->digs, one, columns->of[c]);
         }
     }
-    const double *const square = columns.of[SQUARE];
-    const double        whole  = dig_product(batch->digs, square, square);
-    take_off(batch->digs, columns.of[ORDER], columns.of[SQUARE]);
-    take_off(batch->digs, columns.of[ORDER], columns.of[SIZE]);
-    const double bent = dig_product(batch->digs, square, square);
-    return bent > 1e-9 * whole ? dig_product(batch->digs, square, columns.of[SIZE]) / sqrt(bent)
-                               : 0.0;
+}
+
+// The log likelihood of n numbers with the variance that they have, but no less than 1.
+static double of_no_order(const double n, const double squares)
+{
+    const double variance = fmax(squares / n, 1.0);
+    return -0.5 * (squares / variance + n * log(variance));
+}
+
+struct dig_drift dig_drift_of(const struct dig_whitened_digs *const batch,
+                              const struct dig_fitted *const fitted, const double spread)
+{
+    assert(batch != NULL && fitted != NULL && spread > 0.0);
+    const struct dig_hypothesis *const by    = &fitted->hypothesis;
+    const size_t                       digs  = batch->digs;
+    struct dig_drift                   drift = { .line = INFINITY, .parabola = -INFINITY };
+    const size_t   wear = dig_effect_place(by->effects, by->effect, DIG_EFFECT_WEAR);
+    struct columns columns;
+    if (wear == by->effects || digs < batch->groups + 2) {
+        return drift;
+    }
+    measure(batch, fitted, wear, &columns);
+    take_off_groups(batch, &columns);
+    double *const size   = columns.of[SIZE];
+    double *const square = columns.of[SQUARE];
+    const double  n      = (double)(digs - batch->groups);
+    const double  half   = 0.5 * spread * spread;
+    const double  none   = of_no_order(n, 2.0 * half * dig_product(digs, size, size));
+    const double  whole  = dig_product(digs, square, square);
+    take_off(digs, columns.of[ORDER], square);
+    take_off(digs, columns.of[ORDER], size);
+    drift.line = -half * dig_product(digs, size, size) - none;
+    if (n > 2.0 && dig_product(digs, square, square) > 1e-9 * whole) {
+        take_off(digs, square, size);
+        drift.parabola = -half * dig_product(digs, size, size) - none;
+    }
+    return drift;
 }

@@ -12,9 +12,6 @@
 // it is so much rarer than the level.
 static const double rarer = 0.01;
 
-// Log evidence beyond which digs that differ as an effect says are not put down to scatter.
-static const double lead = 3.0;
-
 // Evidence is tempered: covariance and templates are known from a few packings only.
 static const double temper = 0.5;
 
@@ -66,13 +63,16 @@ static void fit_all(struct dig_search_work *const c, struct dig_statistic *const
     dig_hypothesis_fit_unlisted(c->batch, &fitted[0], &c->s->nameless);
 }
 
-// The digs differ as an effect says that differs from dig to dig: no mere scatter.
+// The digs differ as an effect says that differs from dig to dig: no mere scatter, and not in any
+// order.
 static bool is_told_by_order(const struct dig_search_work *const c)
 {
     bool told = false;
     for (size_t i = 0; i < c->s->rivals; i++) {
-        const enum dig_effect_id effect = c->single[i].effect[0];
-        told = told || (dig_effect_is_by_dig(effect) && c->s->rival[i].log_evidence > lead);
+        const struct dig_rival *const rival = &c->s->rival[i];
+        told = told || (dig_effect_is_by_dig(c->single[i].effect[0]) &&
+                        rival->log_evidence > DIG_SEARCH_BY_ORDER &&
+                        dig_drift_of(c->batch, &rival->fitted, 1.0).line >= DIG_SEARCH_BY_ORDER);
     }
     return told;
 }

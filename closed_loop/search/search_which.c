@@ -17,8 +17,8 @@ static const double least_lead = 15.0;
 // its hump another shape.
 static const double half = 0.5;
 
-// Of a normal distribution, exceeded either way once in a hundred.
-static const double most_bent = 2.576;
+// Log likelihood by which a parabola leads a line once in a hundred times by chance.
+static const double by_a_bend = 0.5 * 2.576 * 2.576;
 
 // The best pair made with one of the best single effects. False when none is better than single.
 static bool find_pair(struct dig_search_work *const c, struct dig_fitted *const pair)
@@ -61,18 +61,20 @@ static bool is_believable(const struct dig_search_work *const c, const double ev
            evidence >= dig_search_evidence(c, &with, 0) - DIG_SEARCH_TOLD_APART;
 }
 
-// A tooth wears from dig to dig; what comes to rest, or steps once, is no wear. Once in a hundred
-// campaigns a drift that is one comes out as bent.
+// A tooth wears from dig to dig; what comes to rest, or steps once, is no wear, and neither is one
+// dig that is unlike the others.
 static bool drifts_otherwise(struct dig_search_work *const c)
 {
     struct dig_whitened_digs settled = *c->batch;
     dig_steps_settle(&settled, c->s->chosen.z);
-    const bool does = fabs(dig_drift_bend(&settled, &c->s->chosen)) > most_bent;
-    if (does) {
+    const struct dig_drift drift    = dig_drift_of(&settled, &c->s->chosen, c->s->spread);
+    const bool             bends    = drift.parabola > drift.line + by_a_bend;
+    const bool             no_order = drift.line < DIG_SEARCH_BY_ORDER;
+    if (bends || no_order) {
         (void)snprintf(c->s->without_name.depends_on, sizeof c->s->without_name.depends_on,
-                       "the order of the digs");
+                       bends ? "the order of the digs" : "which dig it is");
     }
-    return does;
+    return bends || no_order;
 }
 
 // The best single effect again, from where a pair that holds it has led: a pair must not lead for

@@ -9,6 +9,10 @@
 /// from two.
 #define DIG_SEARCH_TOLD_APART 6.0
 
+/// Log evidence, twenty to one, by which what goes from dig to dig as an effect says leads digs
+/// that are alike, and digs that differ in no order.
+#define DIG_SEARCH_BY_ORDER 3.0
+
 struct dig_search_work {
     struct dig_whitened_digs  *batch;
     double                     false_alarm;
@@ -33,8 +37,16 @@ double dig_search_best_evidence(const struct dig_search *s);
 /// Chooses one effect, two, or none that has a name: s->chosen, s->unlisted.
 void dig_search_which(struct dig_search_work *c);
 
-/// How many sigmas the parabola's own term is from nothing, of a fit that holds wear; of any other,
-/// or of fewer than five digs: 0. Microseconds.
-double dig_drift_bend(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted);
+/// By how much log likelihood a line through the sizes of digs in their order leads sizes in no
+/// order, and a parabola, which more than two differences tell.
+struct dig_drift {
+    double line, parabola;
+};
+
+/// Of a fit that holds wear; of any other a line leads by INFINITY. spread: by which the batch was
+/// widened; sizes are weighed by the table's own scatter, as a dig that is unlike the others has
+/// widened it. Microseconds.
+struct dig_drift dig_drift_of(const struct dig_whitened_digs *batch,
+                              const struct dig_fitted *fitted, double spread);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H

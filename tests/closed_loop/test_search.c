@@ -284,6 +284,27 @@ TEST(a_drift_that_bends_is_no_wear)
     }
 }
 
+// One dig of a few that is deeper, or of another gravel, is fitted by a line through all, which
+// leads digs that are all alike, but not digs that differ in no order.
+TEST(one_dig_that_is_unlike_the_others_is_no_wear)
+{
+    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+    int                     told   = 0;
+    for (size_t digs = 4; digs <= DIGS; digs += DIGS - 4) {
+        for (size_t unlike = 0; unlike < digs; unlike++) {
+            double   growth[DIGS] = { 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 };
+            uint64_t luck         = 80 + unlike;
+            growth[unlike]        = 1.4;
+            dig(&gravel, 0, NULL, NULL, &luck);
+            grow(growth);
+            const struct dig_search s = search_some(&gravel, digs, 0.01, luck);
+            assert_false(names(&s, DIG_EFFECT_WEAR));
+            told += s.unlisted && strcmp(s.without_name.depends_on, "which dig it is") == 0 ? 1 : 0;
+        }
+    }
+    assert_true(told > 0);
+}
+
 // A single effect whose fit stopped short leaves what a second effect takes off: before the pair is
 // believed the single one is fitted again from where the pair has led.
 TEST(a_pair_does_not_lead_for_having_been_fitted_better)
