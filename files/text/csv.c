@@ -1,5 +1,5 @@
 // strsep() is BSD's, not POSIX's.
-#define _DEFAULT_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _DEFAULT_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "files/text/csv.h"
 

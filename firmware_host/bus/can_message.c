@@ -1,5 +1,5 @@
 // Kernel time stamps and drop counts are Linux', not POSIX'.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "firmware_host/bus/can_message.h"
 

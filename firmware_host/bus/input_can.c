@@ -1,7 +1,7 @@
 // SocketCAN, receiving only: this file holds no call that could put a frame on the bus.
 
 // Kernel time stamps and struct ifreq are Linux', not POSIX'.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "firmware_host/bus/can_message.h"
 #include "firmware_host/bus/input.h"

@@ -1,5 +1,5 @@
 // CPU affinity is a GNU extension.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "firmware_host/threads/rt.h"
 

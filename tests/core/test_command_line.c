@@ -13,7 +13,7 @@
 // What the line makes of the cup, the command, and what is no option; or what is wrong with it.
 static const char *read_line(const char *const line)
 {
-    static char text[200], seen[400];
+    static char text[200], seen[600];
     char       *argv[20] = { NULL };
     int         argc     = 0;
     (void)snprintf(text, sizeof text, "%s", line);

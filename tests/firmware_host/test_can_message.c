@@ -1,7 +1,7 @@
 // Tests for firmware_host/bus/can_message.c, with messages as recvmsg() would fill them.
 
 // Kernel time stamps and drop counts are Linux', not POSIX'.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "firmware_host/bus/can_message.h"
 

@@ -5,7 +5,7 @@
 // is seen, too.
 
 // The trap's registers are Linux', not POSIX'.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "tests/firmware_host/loop_bench.h"
 
@@ -28,7 +28,7 @@ struct calls {
 static _Thread_local struct calls calls;
 
 // The linker's names: __real_ is the library's function, __wrap_ is called in its place.
-// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+// NOLINTBEGIN(bugprone-reserved-identifier)
 #define COUNTED(counter, result, name, parameters, arguments)                                      \
     result __real_##name parameters;                                                               \
     result __wrap_##name parameters;                                                               \
@@ -88,7 +88,7 @@ int                                       __wrap_fprintf(FILE *file, const char 
     va_end(arguments);
     return length;
 }
-// NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+// NOLINTEND(bugprone-reserved-identifier)
 
 // System calls that were trapped, and the last one's number.
 static atomic_ulong trapped;

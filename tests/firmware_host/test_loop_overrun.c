@@ -21,7 +21,7 @@ static struct {
     void (*at_beat)(int beat);
 } fake;
 
-// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+// NOLINTBEGIN(bugprone-reserved-identifier)
 int __wrap_clock_gettime(clockid_t clock, struct timespec *time);
 int __wrap_clock_nanosleep(clockid_t clock, int flags, const struct timespec *deadline,
                            struct timespec *left);
@@ -60,7 +60,7 @@ int __wrap_clock_nanosleep(const clockid_t clock, const int flags,
     }
     return 0;
 }
-// NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+// NOLINTEND(bugprone-reserved-identifier)
 
 static struct bench *bench;
 

@@ -2,7 +2,7 @@
 // the first thread. Says "held" when it stands. 75 where this system does not let it be traced.
 
 // ptrace() is Linux', not POSIX'.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include <dirent.h>
 #include <signal.h>

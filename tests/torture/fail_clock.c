@@ -2,7 +2,7 @@
 // The monotonic clock is as it is.
 
 // syscall() is GNU's.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include <stddef.h>
 #include <sys/syscall.h>

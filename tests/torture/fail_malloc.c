@@ -4,7 +4,7 @@
 // to the file that FAIL_COUNT names.
 
 // dladdr() is GNU's.
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include <dlfcn.h>
 #include <errno.h>

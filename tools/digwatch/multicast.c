@@ -1,5 +1,5 @@
 // Groups are joined by BSD's names, not POSIX's.
-#define _DEFAULT_SOURCE // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _DEFAULT_SOURCE // NOLINT(bugprone-reserved-identifier)
 
 #include "tools/digwatch/multicast.h"
 

@@ -1,5 +1,5 @@
 // Wide characters of curses are X/Open's, not POSIX's.
-#define _XOPEN_SOURCE 700 // NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)
+#define _XOPEN_SOURCE 700 // NOLINT(bugprone-reserved-identifier)
 
 #include "tools/digwatch/terminal.h"
 
