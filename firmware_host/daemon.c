@@ -61,23 +61,8 @@ static struct dig_assembler_settings assembler_settings(const struct dig_loaded 
 
 static void connect_threads(struct dig_daemon *const d)
 {
-    struct handoff_memory *const m = &d->memory;
-    struct dig_handoffs *const   h = &d->handoffs;
-    dig_ring_init(&h->readings, sizeof m->readings[0], READINGS, m->readings);
-    dig_ring_init(&h->records, sizeof m->records[0], RECORDS, m->records);
-    // NOLINTNEXTLINE(bugprone-sizeof-expression): the memory itself is handed over, by pointer
-    dig_ring_init(&h->digs, sizeof m->digs[0], DIGS, m->digs);
-    dig_ring_init(&h->results, sizeof m->results[0], RESULTS, m->results);
-    dig_ring_init(&h->estimates, sizeof m->estimates[0], ESTIMATES, m->estimates);
-    // NOLINTNEXTLINE(bugprone-sizeof-expression): as above
-    dig_ring_init(&h->spares, sizeof m->spares[0], DIGS, m->spares);
-    dig_latest_init(&h->basis, sizeof m->basis[0], m->basis);
-    dig_latest_init(&h->table, sizeof m->table[0], m->table);
-    dig_latest_init(&h->tables, sizeof m->tables[0], m->tables);
-    dig_latest_init(&h->predictions, sizeof m->predictions[0], m->predictions);
-    dig_latest_init(&h->tick_status, sizeof m->tick_status[0], m->tick_status);
-    dig_latest_init(&h->input_log, sizeof m->input_log[0], m->input_log);
-    dig_latest_init(&h->fit_log, sizeof m->fit_log[0], m->fit_log);
+    struct dig_handoffs *const h = &d->handoffs;
+    dig_handoffs_init(h, &d->memory);
 
     d->input.readings = &h->readings;
     d->input.log      = &h->input_log;

@@ -5,49 +5,22 @@
 #define DIG_TESTS_WIRES_H
 
 #include "core/units.h"
-#include "firmware_host/matching/fit.h"
-#include "firmware_host/tick/loop.h"
+#include "firmware_host/handoff_memory.h"
 
 #include <math.h>
 
 #define WIRES_LAMBDA 10.0 // the machine is so much larger than the rig
 
-#define WIRES_RING      1024 // readings and records
-#define WIRES_RESULTS   64
-#define WIRES_ESTIMATES 4096 // estimates, of the dig going on
-
 struct wires {
-    struct dig_handoffs handoffs;
-    atomic_llong        tick_generation, publisher_generation; // of the table in use there
-
-    struct dig_reading           reading_memory[WIRES_RING];
-    struct dig_record            record_memory[WIRES_RING];
-    struct dig_recorded_dig     *dig_memory[4], *spare_memory[4];
-    struct dig_fit_result        result_memory[WIRES_RESULTS];
-    struct dig_estimate          estimate_memory[WIRES_ESTIMATES];
-    struct dig_prediction_basis  basis_memory[3], table_memory[3];
-    struct dig_table_update      tables_memory[3];
-    struct dig_prediction_record predictions_memory[3];
-    struct dig_tick_status       tick_status_memory[3];
-    struct dig_log_line          log_memory[3];
+    struct dig_handoffs       handoffs;
+    struct dig_handoff_memory memory;
+    atomic_llong              tick_generation, publisher_generation; // of the table in use there
 };
 
 /// All of them empty, the first table in use. They stay where they are.
 static inline void wires_init(struct wires *const w)
 {
-    struct dig_handoffs *const h = &w->handoffs;
-    dig_ring_init(&h->readings, sizeof w->reading_memory[0], WIRES_RING, w->reading_memory);
-    dig_ring_init(&h->records, sizeof w->record_memory[0], WIRES_RING, w->record_memory);
-    dig_ring_init(&h->digs, sizeof w->dig_memory[0], 4, w->dig_memory);
-    dig_ring_init(&h->spares, sizeof w->spare_memory[0], 4, w->spare_memory);
-    dig_ring_init(&h->results, sizeof w->result_memory[0], WIRES_RESULTS, w->result_memory);
-    dig_ring_init(&h->estimates, sizeof w->estimate_memory[0], WIRES_ESTIMATES, w->estimate_memory);
-    dig_latest_init(&h->basis, sizeof w->basis_memory[0], w->basis_memory);
-    dig_latest_init(&h->table, sizeof w->table_memory[0], w->table_memory);
-    dig_latest_init(&h->tables, sizeof w->tables_memory[0], w->tables_memory);
-    dig_latest_init(&h->predictions, sizeof w->predictions_memory[0], w->predictions_memory);
-    dig_latest_init(&h->tick_status, sizeof w->tick_status_memory[0], w->tick_status_memory);
-    dig_latest_init(&h->fit_log, sizeof w->log_memory[0], w->log_memory);
+    dig_handoffs_init(&w->handoffs, &w->memory);
     atomic_store(&w->tick_generation, 1);
     atomic_store(&w->publisher_generation, 1);
 }

@@ -66,8 +66,8 @@ static inline struct bench *bench_create(void)
         dig_estimator_init(b->estimator, &b->machine, &b->cube.set, &b->estimator_settings),
         DIG_OK);
     wires_init(&b->wires);
-    dig_ring_init(&b->wires.handoffs.estimates, sizeof b->wires.estimate_memory[0], BENCH_ESTIMATES,
-                  b->wires.estimate_memory);
+    dig_ring_init(&b->wires.handoffs.estimates, sizeof b->wires.memory.estimates[0],
+                  BENCH_ESTIMATES, b->wires.memory.estimates);
     for (int i = 0; i < 2; i++) {
         b->buffer[i] = calloc(1, dig_recorded_dig_size());
         assert_non_null(b->buffer[i]);
