@@ -192,6 +192,22 @@ static enum dig_status put_picture(const struct dig_plot *const plot, FILE *cons
     return status;
 }
 
+void dig_plot_of_dig(const double unit, const double measured[DIG_CURVE_POINTS], const double first,
+                     const double last, const double model[DIG_CURVE_POINTS],
+                     const double sigma[DIG_CURVE_POINTS], struct dig_plot_dig *const dig)
+{
+    assert(measured != NULL && model != NULL && sigma != NULL && dig != NULL);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
+        const double half     = unit * DIG_PLOT_BAND_SIGMAS * sigma[k];
+        dig->x[k]             = 100.0 * progress;
+        dig->model[k]         = unit * model[k];
+        dig->low[k]           = dig->model[k] - half;
+        dig->high[k]          = dig->model[k] + half;
+        dig->measured[k] = progress >= first && progress <= last ? unit * measured[k] : (double)NAN;
+    }
+}
+
 enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const to,
                                 struct dig_error *const error)
 {

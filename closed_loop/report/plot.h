@@ -5,6 +5,7 @@
 #ifndef DIG_CLOSED_LOOP_REPORT_PLOT_H
 #define DIG_CLOSED_LOOP_REPORT_PLOT_H
 
+#include "core/curve.h"
 #include "core/error.h"
 
 #include <stdbool.h>
@@ -52,6 +53,20 @@ struct dig_plot {
     size_t                 series;       // drawn in this order, later ones on top
     struct dig_plot_series s[DIG_PLOT_SERIES_MAX];
 };
+
+#define DIG_PLOT_BAND_SIGMAS 1.645 // of the band that holds 90 % of digs
+
+/// A channel of one dig over its path, %, as it was measured and as a model has it.
+struct dig_plot_dig {
+    double x[DIG_CURVE_POINTS], measured[DIG_CURVE_POINTS], model[DIG_CURVE_POINTS];
+    double low[DIG_CURVE_POINTS], high[DIG_CURVE_POINTS]; // the band about the model
+};
+
+/// Fills it from curves and the model's sigma, so many units of theirs to one of the picture. What
+/// was measured is a gap outside the progress first to last.
+void dig_plot_of_dig(double unit, const double measured[DIG_CURVE_POINTS], double first,
+                     double last, const double model[DIG_CURVE_POINTS],
+                     const double sigma[DIG_CURVE_POINTS], struct dig_plot_dig *dig);
 
 /// Writes a <figure> for an HTML page, of one <svg> element. Points that are not finite are gaps.
 /// DIG_EIO: gnuplot is missing or failed; nothing useful was written then. Starts a process; takes

@@ -113,22 +113,12 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
                                 const double lambda, const char *const title,
                                 const char *const model, struct dig_error *const error)
 {
-    double       x[DIG_CURVE_POINTS];
-    double       low[DIG_CURVE_POINTS];
-    double       high[DIG_CURVE_POINTS];
-    double       fed[DIG_CURVE_POINTS];
-    double       mean[DIG_CURVE_POINTS];
-    double       measured[DIG_CURVE_POINTS];
-    const double kNm = 1e-3 * pow(lambda, 4.0); // at machine scale, of a rig's N·m
+    struct dig_plot_dig p;
+    double              fed[DIG_CURVE_POINTS];
+    const double        kNm = 1e-3 * pow(lambda, 4.0); // at machine scale, of a rig's N·m
+    dig_plot_of_dig(kNm, dig->measured_Nm, dig->first, dig->last, dig->model_Nm, dig->sigma_Nm, &p);
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        x[k]        = 100.0 * k / (DIG_CURVE_POINTS - 1);
-        mean[k]     = kNm * dig->model_Nm[k];
-        low[k]      = mean[k] - kNm * DIG_REPORT_BAND_SIGMAS * dig->sigma_Nm[k];
-        high[k]     = mean[k] + kNm * DIG_REPORT_BAND_SIGMAS * dig->sigma_Nm[k];
-        fed[k]      = kNm * dig->recording_Nm[k];
-        measured[k] = x[k] >= 100.0 * dig->first && x[k] <= 100.0 * dig->last
-                          ? kNm * dig->measured_Nm[k]
-                          : (double)NAN;
+        fed[k] = kNm * dig->recording_Nm[k];
     }
     const size_t          n    = DIG_CURVE_POINTS;
     const struct dig_plot plot = {
@@ -140,11 +130,11 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
         .from_zero    = true,
         .height       = 370,
         .series       = 4,
-        .s            = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, x, low, high },
-                          { "recording fed to the rig", DIG_PLOT_DOTTED, DIG_PLOT_FED, n, x, fed, NULL },
-                          { model, DIG_PLOT_DASHED, DIG_PLOT_PREDICTED, n, x, mean, NULL },
-                          { "measured through pressures", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, x, measured,
-                            NULL } },
+        .s = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, p.x, p.low, p.high },
+               { "recording fed to the rig", DIG_PLOT_DOTTED, DIG_PLOT_FED, n, p.x, fed, NULL },
+               { model, DIG_PLOT_DASHED, DIG_PLOT_PREDICTED, n, p.x, p.model, NULL },
+               { "measured through pressures", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, p.x, p.measured,
+                 NULL } },
     };
     return dig_plot_figure(&plot, to, error);
 }

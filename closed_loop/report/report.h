@@ -13,8 +13,6 @@
 
 #define DIG_REPORT_RUNS_MAX 4
 
-#define DIG_REPORT_BAND_SIGMAS 1.645 // of the band that holds 90 % of digs
-
 /// What each page says below of the error it shows.
 #define DIG_REPORT_ERROR_NOTE                                                                       \
     "Error: relative Euclidean norm of the moment, measured minus predicted, over rig time from "   \

@@ -158,32 +158,6 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         to);
 }
 
-// A channel of one dig over its path, with the band that holds 90 % of digs.
-struct dig_picture {
-    double x[DIG_CURVE_POINTS], measured[DIG_CURVE_POINTS];
-    double before[DIG_CURVE_POINTS], after[DIG_CURVE_POINTS];
-    double low[DIG_CURVE_POINTS], high[DIG_CURVE_POINTS]; // about after
-};
-
-// What lies outside contact to exit is a gap. unit: of the table's, as it is drawn.
-static void fill_picture(const struct dig_trace_curves *const curves,
-                         const struct dig_measured *const dig, const size_t channel,
-                         const double unit, struct dig_picture *const p)
-{
-    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        const double progress = (double)k / (DIG_CURVE_POINTS - 1);
-        const double half     = unit * DIG_REPORT_BAND_SIGMAS * curves->after.sd[channel][k];
-        p->x[k]               = 100.0 * progress;
-        p->before[k]          = unit * curves->before.value[channel][k];
-        p->after[k]           = unit * curves->after.value[channel][k];
-        p->low[k]             = p->after[k] - half;
-        p->high[k]            = p->after[k] + half;
-        p->measured[k]        = progress >= dig->first && progress <= dig->last
-                                    ? unit * dig->value[channel][k]
-                                    : (double)NAN;
-    }
-}
-
 static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves *const curves,
                                    const struct dig_measured *const dig,
                                    const char *const trajectory, const double lambda,
@@ -197,14 +171,19 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
                                                            "at rig scale, N" };
     static const char *const of[DIG_FORCE_CHANNELS]    = { "", ", Fx", ", Fz" };
 
-    struct dig_picture p;
-    char               title[224];
-    char               way[DIG_APPROACH_TEXT_SIZE];
-    const size_t       n      = DIG_CURVE_POINTS;
-    const bool         scaled = lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
-    const double       power  = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
-    const double       unit   = scaled ? 1e-3 * pow(lambda, power) : 1.0;
-    fill_picture(curves, dig, channel, unit, &p);
+    struct dig_plot_dig p;
+    double              before[DIG_CURVE_POINTS];
+    char                title[224];
+    char                way[DIG_APPROACH_TEXT_SIZE];
+    const size_t        n      = DIG_CURVE_POINTS;
+    const bool          scaled = lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
+    const double        power  = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
+    const double        unit   = scaled ? 1e-3 * pow(lambda, power) : 1.0;
+    dig_plot_of_dig(unit, dig->value[channel], dig->first, dig->last, curves->after.value[channel],
+                    curves->after.sd[channel], &p);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        before[k] = unit * curves->before.value[channel][k];
+    }
     dig_residuals_approach_text(&dig->taken_off, way);
     (void)snprintf(title, sizeof title, "%s: %s, %s%s%s%s%s", dig->name, trajectory,
                    dig_residuals_use_name(dig->use), dig->pass > 1 ? ", dug before" : "", way,
@@ -224,12 +203,12 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
         .series       = 3,
         .s = { { "90 % of digs", DIG_PLOT_BAND, DIG_PLOT_PREDICTED, n, p.x, p.low, p.high },
                { same ? "before and after" : "after", DIG_PLOT_DASHED, DIG_PLOT_PREDICTED, n, p.x,
-                 p.after, NULL },
+                 p.model, NULL },
                { "measured", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, p.x, p.measured, NULL } },
     };
     if (!same) {
         plot.s[plot.series++] =
-            (struct dig_plot_series){ "before", DIG_PLOT_DOTTED, DIG_PLOT_BEFORE, n, p.x, p.before,
+            (struct dig_plot_series){ "before", DIG_PLOT_DOTTED, DIG_PLOT_BEFORE, n, p.x, before,
                                       NULL };
     }
     return dig_plot_figure(&plot, to, error);

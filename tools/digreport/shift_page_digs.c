@@ -14,7 +14,7 @@ static void put_predicted(FILE *const to, const int digits, const double value, 
 {
     if (isfinite(value) && isfinite(sigma)) {
         (void)fprintf(to, "<td>%.*f ± %.*f</td>", digits, value, digits,
-                      DIG_REPORT_BAND_SIGMAS * sigma);
+                      DIG_PLOT_BAND_SIGMAS * sigma);
     } else {
         (void)fputs("<td>–</td>", to);
     }
@@ -81,7 +81,7 @@ static enum dig_status put_picture(const struct digreport_page *const page, FILE
         y[i]                       = number.measured;
         for (size_t end = 0; end < 3; end++) {
             const size_t at   = 3 * i + end;
-            const double half = DIG_REPORT_BAND_SIGMAS * number.sigma;
+            const double half = DIG_PLOT_BAND_SIGMAS * number.sigma;
             box_x[at]         = x[i] + (end == 0 ? -width : width);
             box_y[at]         = end < 2 ? number.predicted : (double)NAN;
             low[at]           = box_y[at] - half;
