@@ -51,10 +51,11 @@ offline_dem/device     engine_cuda | device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
 closed_loop/numeric    | dense levenberg vectors
-closed_loop/recordings measured observe observe_machine saturation | features machine_dig reading_noise regressors
+closed_loop/recordings measured observe | features reading_noise regressors path_depth
+closed_loop/machine_digs observe_machine saturation | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs
-closed_loop/machine    machine_side | machine_air machine_fit machine_lines machine_motion machine_noise machine_side_private
+closed_loop/machine    machine_side | machine_air machine_fit machine_lines machine_noise
 closed_loop/check      machine_check
 closed_loop/search     | cross_validation portmanteau search search_work unlisted
 closed_loop/accuracy   coverage score | decision effect_size judge trend

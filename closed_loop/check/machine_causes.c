@@ -1,5 +1,6 @@
 #include "closed_loop/check/machine_causes.h"
 
+#include "closed_loop/check/cause_columns.h"
 #include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_lines.h"
 #include "closed_loop/machine/machine_noise.h"
@@ -16,78 +17,23 @@ static const double false_alarm = 0.01;
 // Two sets of causes whose log evidence differs by less cannot be told apart.
 static const double tie = 5.0;
 
-// Tolerances that a machine file does not state, 1 sigma: an angle sensor is set to half a degree,
-// a transmitter is of class 0.5 of its valve's relief pressure, its span known to a hundredth; a
-// gateway hands on what it has within ten milliseconds.
-static const double zero_rad    = 0.5 * DIG_RAD_PER_DEG;
-static const double span_share  = 0.01;
-static const double class_share = 0.005;
-static const double late_s      = 0.01;
-// A seal rubs with a hundredth of what its cylinder can push; an inertia is known to a fifth.
-static const double seal_share    = 0.01;
-static const double inertia_share = 0.2;
-
-// 1 sigma of a cause that is wrong.
-static const double wrong_rad    = 10.0 * DIG_RAD_PER_DEG;
-static const double wrong_share  = 0.2;  // of a span
-static const double wrong_weight = 0.45; // of a weight
-static const double wrong_Pa     = 3e6;
-static const double wrong_late_s = 0.1;
-
 // A chamber that changes a push by less than this share of what the other does is a return side.
 static const double little_share = 0.5;
-
-// The parameters of the effects, in the order of estimator/effects/.
-enum { OF_A_SEAL = 4, COULOMB = 0, STRIBECK = 3, GAINS = 6, SEALS = 12 };
 
 struct work {
     struct dig_air *air;
     struct dig_fit  fit;
+    int             cause[DIG_LINES_COLUMNS_MAX]; // that each column belongs to; -1: none
+    double          tolerance[DIG_CAUSES];
     double          base[DIG_LINES_COLUMNS_MAX];  // width of each column's tolerance, in scales
     double          gross[DIG_LINES_COLUMNS_MAX]; // and of a cause
     double          width[DIG_LINES_COLUMNS_MAX]; // of the fit at hand
     unsigned        asked;                        // a bit each
 };
 
-// A link's weight and where it lies are known together.
-static double weight_tolerance_kg(const struct dig_machine *const machine, const size_t joint)
-{
-    const struct dig_link *const link = &machine->link[joint];
-
-    const double lies_m = dig_vec2_norm(link->com_m);
-    const double share =
-        lies_m > 0.0 ? machine->tolerance.com_share * link->length_m / lies_m : 0.0;
-    return link->mass_kg * hypot(machine->tolerance.mass_share, share);
-}
-
 static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
 {
     return &w->air->machine.cylinder[joint];
-}
-
-// 1 sigma of a cause: within its tolerance, and where it is wrong.
-struct sigmas {
-    double tolerance, wrong;
-};
-
-static struct sigmas sigmas_of(const struct work *const w, const size_t cause)
-{
-    const struct dig_machine *const machine = &w->air->machine;
-    const size_t                    joint   = cause % DIG_JOINTS;
-    if (cause == DIG_CAUSE_DELAY) {
-        return (struct sigmas){ late_s, wrong_late_s };
-    }
-    switch ((enum dig_cause_kind)(cause / DIG_JOINTS)) {
-    case DIG_CAUSE_ZERO: return (struct sigmas){ zero_rad, wrong_rad };
-    case DIG_CAUSE_FACTOR: return (struct sigmas){ span_share, wrong_share };
-    case DIG_CAUSE_OFFSET:
-        return (struct sigmas){ class_share * machine->cylinder[joint].relief_Pa, wrong_Pa };
-    case DIG_CAUSE_WEIGHT:
-        return (struct sigmas){ weight_tolerance_kg(machine, joint),
-                                wrong_weight * machine->link[joint].mass_kg };
-    case DIG_CAUSE_KINDS: break;
-    }
-    return (struct sigmas){ (double)NAN, (double)NAN };
 }
 
 // How much a drive's push changes by one of its chambers, N rms.
@@ -118,81 +64,41 @@ static bool is_return_side(const struct work *const w, const size_t joint, const
     return changes_N(w, joint, chamber) < little_share * changes_N(w, joint, chamber ^ 1U);
 }
 
-static int at_joint(const enum dig_cause_kind kind, const size_t joint)
-{
-    return (int)((size_t)kind * DIG_JOINTS + joint);
-}
-
-// The cause that a column belongs to, or -1.
-static int cause_of(const struct dig_lines_column *const column)
-{
-    const size_t p = column->parameter;
-    if (column->effect == DIG_EFFECT_UNLISTED) {
-        return p >= DIG_FILE_LINKS ? at_joint(DIG_CAUSE_WEIGHT, (p - DIG_FILE_LINKS) / 3) : -1;
-    }
-    if (column->effect == DIG_EFFECT_ANGLE_OFFSET) {
-        return at_joint(DIG_CAUSE_ZERO, p);
-    }
-    if (column->effect == DIG_EFFECT_PRESSURE_OFFSET) {
-        return at_joint(p < GAINS ? DIG_CAUSE_OFFSET : DIG_CAUSE_FACTOR, p % GAINS / DIG_CHAMBERS);
-    }
-    return column->effect == DIG_EFFECT_SENSOR_DELAY ? (int)DIG_CAUSE_DELAY : -1;
-}
-
-// The tolerance of a column that is no cause's, in the unit of its scale.
-static double allowed(const struct work *const w, const struct dig_lines_column *const column)
-{
-    static const enum dig_joint     drive[DIG_JOINTS] = { DIG_JOINT_BUCKET, DIG_JOINT_ARM,
-                                                          DIG_JOINT_BOOM };
-    const struct dig_machine *const machine           = &w->air->machine;
-    const size_t                    p                 = column->parameter;
-    if (column->effect == DIG_EFFECT_UNLISTED) {
-        return DIG_FILE_LEVEL_SIGMA_rad;
-    }
-    if (column->effect == DIG_EFFECT_LINKAGE_GEOMETRY) {
-        return machine->tolerance.pin_m;
-    }
-    if (column->effect == DIG_EFFECT_BUCKET_INERTIA) {
-        return inertia_share * machine->link[DIG_JOINT_BUCKET].inertia_kgm2;
-    }
-    if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < SEALS) {
-        const struct dig_cylinder *const cylinder = cylinder_of(w, drive[p / OF_A_SEAL]);
-        const double                     push_N =
-            cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
-        return p % OF_A_SEAL == COULOMB    ? seal_share * push_N
-               : p % OF_A_SEAL == STRIBECK ? 0.0
-                                           : column->scale;
-    }
-    return 0.0; // a payload is the bucket's weight here
-}
-
 static void set_widths(struct work *const w)
 {
     for (size_t c = 0; c < w->fit.lines.columns; c++) {
         const struct dig_lines_column *const column = &w->fit.lines.column[c];
 
-        const int           cause = cause_of(column);
-        const struct sigmas sigma =
-            cause >= 0 ? sigmas_of(w, (size_t)cause) : (struct sigmas){ allowed(w, column), 0.0 };
-        w->base[c]  = sigma.tolerance / column->scale;
-        w->gross[c] = cause >= 0 ? sigma.wrong / column->scale : w->base[c];
+        const struct dig_cause_column meaning = dig_cause_column_of(&w->air->machine, column);
+        const int                     cause   = meaning.cause;
+
+        w->cause[c] = cause;
+        w->base[c]  = meaning.tolerance / column->scale;
+        w->gross[c] = meaning.wrong / column->scale;
+        if (cause < 0) {
+            continue;
+        }
+        w->tolerance[cause] = meaning.tolerance;
         // Of a return side, whose pressure hardly changes, a factor is an offset.
-        const bool factor  = cause >= 0 && cause / DIG_JOINTS == (int)DIG_CAUSE_FACTOR;
+        const bool factor  = cause / DIG_JOINTS == (int)DIG_CAUSE_FACTOR;
         const bool returns = factor && is_return_side(w, (size_t)cause % DIG_JOINTS,
                                                       column->parameter % DIG_CHAMBERS);
-        if (cause >= 0 && (((w->asked >> cause) & 1U) == 0 || returns)) {
+        if (((w->asked >> cause) & 1U) == 0 || returns) {
             w->gross[c] = w->base[c];
         }
     }
+}
+
+static bool is_of(const struct work *const w, const size_t column, const unsigned causes)
+{
+    return w->cause[column] >= 0 && ((causes >> w->cause[column]) & 1U) != 0;
 }
 
 // The log evidence where these are named; whole: with values and covariance.
 static double solve(struct work *const w, const unsigned named, const bool whole)
 {
     for (size_t c = 0; c < w->fit.lines.columns; c++) {
-        const int  cause = cause_of(&w->fit.lines.column[c]);
-        const bool wide  = cause >= 0 && ((named >> cause) & 1U) != 0;
-        w->width[c]      = wide ? w->gross[c] : w->base[c];
+        w->width[c] = is_of(w, c, named) ? w->gross[c] : w->base[c];
     }
     struct dig_fit_answer answer = { .at         = whole ? w->fit.at : NULL,
                                      .covariance = whole ? w->fit.covariance : NULL };
@@ -250,7 +156,7 @@ static double share_of(const struct work *const w, const size_t cause, const siz
 {
     const struct dig_lines_column *const c     = &w->fit.lines.column[column];
     const size_t                         joint = cause % DIG_JOINTS;
-    if (cause_of(c) != (int)cause) {
+    if (w->cause[column] != (int)cause) {
         return 0.0;
     }
     if (c->effect != DIG_EFFECT_PRESSURE_OFFSET) {
@@ -308,7 +214,7 @@ static void figures(struct work *const w, const unsigned named, struct dig_cause
     for (unsigned k = 0; k < DIG_CAUSES; k++) {
         const unsigned one = 1U << k;
         value_of(w, named | one, k, &cause[k]);
-        cause[k].tolerance = sigmas_of(w, k).tolerance;
+        cause[k].tolerance = w->tolerance[k];
         cause[k].named     = (named & one) != 0;
         cause[k].or_cause  = cause[k].named ? tied(w, named, k) : -1;
     }
@@ -368,8 +274,7 @@ enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_
         figures(&w, named, causes->cause);
         // The causes alone: what is within its tolerance is no one's to mend.
         for (size_t c = 0; c < w.fit.lines.columns; c++) {
-            const int cause = cause_of(&w.fit.lines.column[c]);
-            alone[c]        = cause >= 0 && ((named >> cause) & 1U) != 0 ? w.fit.lines.at[c] : 0.0;
+            alone[c] = is_of(&w, c, named) ? w.fit.lines.at[c] : 0.0;
         }
         dig_lines_correct(&w.fit.lines, alone, correction);
     }

@@ -10,7 +10,7 @@
 #define DIG_CLOSED_LOOP_CHECK_MACHINE_CAUSES_H
 
 #include "closed_loop/machine/machine_air.h"
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "core/machine.h"
 #include "core/status.h"
 

@@ -141,15 +141,17 @@ static void check_causes(const struct dig_machine *const machine,
     }
 }
 
+// What the drives push and would have to, in one piece at *drive_N.
 static enum dig_status draw(const struct dig_air *const        air,
                             const struct dig_correction *const correction, double **const drive_N,
                             double **const load_N)
 {
-    *drive_N = malloc((DIG_JOINTS * air->points + 1) * sizeof **drive_N);
-    *load_N  = malloc((DIG_JOINTS * air->points + 1) * sizeof **load_N);
-    if (*drive_N == NULL || *load_N == NULL) {
+    const size_t n = DIG_JOINTS * air->points;
+    *drive_N       = malloc((2 * n + 1) * sizeof **drive_N);
+    if (*drive_N == NULL) {
         return DIG_ENOMEM;
     }
+    *load_N = *drive_N + n;
     dig_air_forces(air, correction, *drive_N, *load_N);
     return DIG_OK;
 }
@@ -338,9 +340,7 @@ void dig_machine_air_check_finish(struct dig_machine_air_check *const check)
     if (check != NULL) {
         free(check->curves.time_s);
         free(check->curves.drive_N);
-        free(check->curves.load_N);
         free(check->curves.mended_drive_N);
-        free(check->curves.mended_load_N);
         *check = (struct dig_machine_air_check){ .items = 0 };
     }
 }

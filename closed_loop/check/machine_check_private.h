@@ -4,7 +4,7 @@
 #define DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_PRIVATE_H
 
 #include "closed_loop/check/machine_check.h"
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "core/units.h"
 
 /// A joint that turns by less is not asked about.

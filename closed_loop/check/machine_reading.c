@@ -1,9 +1,7 @@
 #include "closed_loop/check/machine_reading.h"
 
-#include "core/linkage.h"
+#include "closed_loop/check/drive_misfit.h"
 #include "core/units.h"
-#include "estimator/wrench/dynamics.h"
-#include "estimator/wrench/statics.h"
 
 #include <assert.h>
 #include <math.h>
@@ -15,16 +13,8 @@
 enum { INSTANTS = 240, MOST_POSES = 100 };
 static const double pose_rad = 0.1;
 
-// What may be left of a load without anything being mixed up.
-static const double allowed_share = 0.07;
-
-// Taken off before: 1 sigma of an offset and of a factor of the load, and how far that goes.
-static const double noise_share = 0.03; // of averaged readings
-static const double offset_Pa   = 2e6;
-static const double load_share  = 0.25;
-static const double most_share  = 0.5;
-static const double beyond_rad  = 3.0 * DIG_RAD_PER_DEG; // of a joint's range
-static const double each_change = 5.0; // log odds against one thing being mixed up
+// Log odds against one thing being mixed up.
+static const double each_change = 5.0;
 
 // Angles beyond this, turns and all, are degrees.
 static const double most_rad = 7.0;
@@ -33,7 +23,8 @@ static const double most_rad = 7.0;
 // kPa, MPa, Pa, psi).
 static const double factors[] = { 1.0,  0.1, 10.0, 0.01, 100.0,     1e-3,     1e3,
                                   1e-5, 1e5, 1e-6, 1e6,  0.0689476, 14.50377, 6894.76 };
-enum { FACTORS = sizeof factors / sizeof factors[0] };
+// How a drive's pressures are read: by which factor, and from FACTORS on with its sides exchanged.
+enum { FACTORS = sizeof factors / sizeof factors[0], ANSWERS = 2 * FACTORS };
 
 static const enum dig_joint orders[][DIG_JOINTS] = {
     { 0, 1, 2 }, { 1, 0, 2 }, { 2, 1, 0 }, { 0, 2, 1 }, { 1, 2, 0 }, { 2, 0, 1 },
@@ -138,136 +129,27 @@ static void pick(const struct dig_air *const air, const bool degrees, struct sea
     }
 }
 
-// What each drive would have to push, N; NaN where its joint cannot stand like that.
-static void loads(const struct search *const s, const struct dig_reading *const reading,
-                  double load_N[INSTANTS][DIG_JOINTS])
-{
-    for (size_t k = 0; k < s->n; k++) {
-        const struct dig_air_point *const at    = &s->at[k];
-        struct dig_rates                  rates = at->rates;
-        double                            rad[DIG_JOINTS];
-        double                            mass_Nm[DIG_JOINTS];
-        for (int j = 0; j < DIG_JOINTS; j++) {
-            const double sign = reading->turned[j] ? -1.0 : 1.0;
-            rad[j] = sign * at->sample.value[DIG_SIGNAL_BOOM_rad + j] - reading->zero_rad[j];
-            rates.velocity_radps[j] *= sign;
-            rates.acceleration_radps2[j] *= sign;
-        }
-        const struct dig_front front = dig_front_place(s->machine, rad);
-        const double           pitch_rad =
-            at->sample.valid[DIG_SIGNAL_PITCH_rad] ? at->sample.value[DIG_SIGNAL_PITCH_rad] : 0.0;
-        dig_dynamics_Nm(s->machine, &front, &rates, pitch_rad, mass_Nm);
-        for (int j = 0; j < DIG_JOINTS; j++) {
-            const struct dig_link *const link = &s->machine->link[j];
-            struct dig_lever             lever;
-            const bool                   stands =
-                rad[j] > link->min_rad - beyond_rad && rad[j] < link->max_rad + beyond_rad &&
-                dig_lever_solve(s->machine, (enum dig_joint)j, rad[j], &lever) == DIG_OK;
-            load_N[k][j] = stands ? -mass_Nm[j] / lever.arm_m : (double)NAN;
-        }
-    }
-}
-
-// Sums over instants of a load and of the push of one pair of chambers.
-struct sums {
-    double n, l, ll, p, pp, lp;
-    double chambers; // of the squares of what either chamber pushes
-};
-
-static struct sums add_up(const struct search *const s, double load_N[INSTANTS][DIG_JOINTS],
-                          const int joint, const int drive, const bool swapped)
-{
-    const struct dig_cylinder *const cylinder = &s->machine->cylinder[joint];
-
-    const double head_m2 = cylinder->count * dig_cylinder_head_m2(cylinder);
-    const double rod_m2  = cylinder->count * dig_cylinder_rod_m2(cylinder);
-    const size_t head    = chamber_signal((enum dig_joint)drive, swapped ? 1U : 0U);
-    const size_t rod     = chamber_signal((enum dig_joint)drive, swapped ? 0U : 1U);
-    struct sums  sums    = { .n = 0.0 };
-    for (size_t k = 0; k < s->n; k++) {
-        const double l = load_N[k][joint];
-        if (isfinite(l)) {
-            const double *const Pa = s->at[k].sample.value;
-            const double        p  = head_m2 * Pa[head] - rod_m2 * Pa[rod];
-            sums.chambers += pow(head_m2 * Pa[head], 2.0) + pow(rod_m2 * Pa[rod], 2.0);
-            sums.n += 1.0;
-            sums.l += l;
-            sums.ll += l * l;
-            sums.p += p;
-            sums.pp += p * p;
-            sums.lp += l * p;
-        }
-    }
-    return sums;
-}
-
-// Minus the log likelihood of one drive's readings: of e = push - load, less offset + share * load,
-// both with normal priors, the share within its bounds. What may be left is a share of the push and
-// some noise of its chambers: of what is read, whatever the factor.
-static double misfit(const struct search *const s, const struct sums *const sums, const int joint,
-                     const double factor)
-{
-    const struct dig_cylinder *const cylinder = &s->machine->cylinder[joint];
-
-    const double each     = s->poses / (double)s->n; // poses an instant
-    const double nothing  = 1.0 / (allowed_share * allowed_share);
-    const double missing  = ((double)s->n - sums->n) * each * nothing;
-    const double offset_N = cylinder->count * dig_cylinder_head_m2(cylinder) * offset_Pa;
-    if (!(sums->n > 0.0)) {
-        return missing;
-    }
-    const double p  = factor * sums->p;
-    const double pp = factor * factor * sums->pp;
-    const double lp = factor * sums->lp;
-    const double read_N2 =
-        allowed_share * allowed_share * sums->pp + noise_share * noise_share * sums->chambers;
-    const double w = each * sums->n / fmax(factor * factor * read_N2, 1e-9);
-
-    const double e  = p - sums->l;
-    const double el = lp - sums->ll;
-    const double ee = pp - 2.0 * lp + sums->ll;
-    // The share that is best with its own best offset.
-    const double oo = w * sums->n + 1.0 / (offset_N * offset_N);
-    const double os = w * sums->l;
-    const double ss = w * sums->ll + 1.0 / (load_share * load_share);
-    const double share =
-        fmin(fmax((w * el - os * w * e / oo) / (ss - os * os / oo), -most_share), most_share);
-    const double offset = (w * e - os * share) / oo;
-    const double chi2   = w * ee - 2.0 * offset * w * e - 2.0 * share * w * el +
-                        oo * offset * offset + 2.0 * os * offset * share + ss * share * share;
-    return 0.5 * (fmax(chi2, 0.0) + missing);
-}
-
-typedef double costs[DIG_JOINTS][DIG_JOINTS][2][FACTORS];
-
-// How the pressures of one drive are read.
-struct answer {
-    size_t swapped, factor;
-    double cost;
-};
+typedef double costs[DIG_JOINTS][DIG_JOINTS][ANSWERS]; // of a joint by the columns of another
 
 // What an answer of drive j costs where a factor is common to all, its chambers in the columns of
 // another drive; a joint that hardly moves is read as its columns say.
-static struct answer answer_of(const struct search *const s, costs cost, const size_t j,
-                               const enum dig_joint drive, const size_t swapped,
-                               const size_t factor, const size_t common)
+static double cost_of(const struct search *const s, costs cost, const size_t j,
+                      const enum dig_joint drive, const size_t answer, const size_t common)
 {
-    const bool   asked = s->moves[j] || (swapped == 0 && factor == common);
-    const double more =
-        (swapped > 0 ? each_change : 0.0) + (factor != common ? 2.0 * each_change : 0.0);
-    return (struct answer){ swapped, factor,
-                            asked ? cost[j][drive][swapped][factor] + more : (double)INFINITY };
+    const bool   asked = s->moves[j] || answer == common;
+    const double more  = (answer >= FACTORS ? each_change : 0.0) +
+                        (answer % FACTORS != common ? 2.0 * each_change : 0.0);
+    return asked ? cost[j][drive][answer] + more : (double)INFINITY;
 }
 
-static struct answer best_answer(const struct search *const s, costs cost, const size_t j,
-                                 const enum dig_joint drive, const size_t common)
+static size_t best_answer(const struct search *const s, costs cost, const size_t j,
+                          const enum dig_joint drive, const size_t common)
 {
-    struct answer best = { .cost = INFINITY };
-    for (size_t w = 0; w < 2; w++) {
-        for (size_t f = 0; f < FACTORS; f++) {
-            const struct answer one = answer_of(s, cost, j, drive, w, f, common);
-            best                    = one.cost < best.cost ? one : best;
-        }
+    size_t best = 0;
+    for (size_t a = 1; a < ANSWERS; a++) {
+        best = cost_of(s, cost, j, drive, a, common) < cost_of(s, cost, j, drive, best, common)
+                   ? a
+                   : best;
     }
     return best;
 }
@@ -278,16 +160,16 @@ static void lower(double *const least, const double cost)
 }
 
 static void keep(struct search *const s, struct dig_reading reading,
-                 const struct answer answer[DIG_JOINTS], const double cost)
+                 const size_t answer[DIG_JOINTS], const double cost)
 {
     size_t given[DIG_READING_QUESTIONS][DIG_JOINTS];
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        reading.swapped[j]            = answer[j].swapped > 0;
-        reading.factor[j]             = factors[answer[j].factor];
+        reading.swapped[j]            = answer[j] >= FACTORS;
+        reading.factor[j]             = factors[answer[j] % FACTORS];
         given[DIG_READING_TURNED][j]  = reading.turned[j] ? 1 : 0;
         given[DIG_READING_DRIVE][j]   = reading.drive[j];
-        given[DIG_READING_SWAPPED][j] = answer[j].swapped;
-        given[DIG_READING_FACTOR][j]  = answer[j].factor;
+        given[DIG_READING_SWAPPED][j] = answer[j] / FACTORS;
+        given[DIG_READING_FACTOR][j]  = answer[j] % FACTORS;
         for (size_t q = 0; q < DIG_READING_QUESTIONS; q++) {
             lower(&s->least[q][j][given[q][j]], cost);
         }
@@ -304,21 +186,20 @@ static void keep(struct search *const s, struct dig_reading reading,
 static void try_order(struct search *const s, const struct dig_reading *const reading,
                       const double before, costs cost, const size_t common)
 {
-    struct answer best[DIG_JOINTS];
-    double        sum = before;
+    size_t best[DIG_JOINTS];
+    double sum = before;
     for (size_t j = 0; j < DIG_JOINTS; j++) {
         best[j] = best_answer(s, cost, j, reading->drive[j], common);
-        sum += best[j].cost;
+        sum += cost_of(s, cost, j, reading->drive[j], best[j], common);
     }
     keep(s, *reading, best, sum);
-    for (size_t i = 0; i < (size_t)DIG_JOINTS * 2 * FACTORS; i++) {
-        const size_t        j    = i % DIG_JOINTS;
-        const size_t        w    = i / DIG_JOINTS % 2;
-        const size_t        f    = i / DIG_JOINTS / 2;
-        const struct answer one  = answer_of(s, cost, j, reading->drive[j], w, f, common);
-        const double        with = sum - best[j].cost + one.cost;
-        lower(&s->least[DIG_READING_SWAPPED][j][w], with);
-        lower(&s->least[DIG_READING_FACTOR][j][f], with);
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const double others = sum - cost_of(s, cost, j, reading->drive[j], best[j], common);
+        for (size_t a = 0; a < ANSWERS; a++) {
+            const double with = others + cost_of(s, cost, j, reading->drive[j], a, common);
+            lower(&s->least[DIG_READING_SWAPPED][j][a / FACTORS], with);
+            lower(&s->least[DIG_READING_FACTOR][j][a % FACTORS], with);
+        }
     }
 }
 
@@ -338,19 +219,20 @@ static void try_pressures(struct search *const s, struct dig_reading reading, co
 }
 
 // What every answer of a drive leaves. A drive that is not recorded says nothing, for or against.
-static void fill_costs(const struct search *const s, double load_N[INSTANTS][DIG_JOINTS],
-                       const int joint, const int drive, double cost[2][FACTORS])
+static void fill_costs(const struct search *const s, const double load_N[], const int joint,
+                       const int drive, double cost[ANSWERS])
 {
-    for (size_t w = 0; w < 2; w++) {
-        struct sums sums = { .n = 0.0 };
-        if (s->told[drive]) {
-            sums = add_up(s, load_N, joint, drive, w > 0);
-        }
-        for (size_t f = 0; f < FACTORS; f++) {
-            cost[w][f] = s->told[drive]   ? misfit(s, &sums, joint, factors[f])
-                         : joint == drive ? 0.0
-                                          : (double)INFINITY;
-        }
+    for (size_t a = 0; a < ANSWERS; a++) {
+        cost[a] = joint == drive ? 0.0 : (double)INFINITY;
+    }
+    for (size_t w = 0; w < 2 && s->told[drive]; w++) {
+        const struct dig_drive_read read = {
+            .cylinder = &s->machine->cylinder[joint],
+            .head     = chamber_signal((enum dig_joint)drive, w),
+            .rod      = chamber_signal((enum dig_joint)drive, 1U - w),
+        };
+        dig_drive_misfits(&read, s->n, s->at, &load_N[s->n * (size_t)joint], s->poses, FACTORS,
+                          factors, &cost[w * FACTORS]);
     }
 }
 
@@ -362,9 +244,9 @@ static void try_angles(struct search *const s, const struct dig_reading *const a
         before += angles->turned[j] ? each_change : 0.0;
         before += fabs(angles->zero_rad[j]) > 0.0 ? each_change : 0.0;
     }
-    double load_N[INSTANTS][DIG_JOINTS];
+    double load_N[DIG_JOINTS * INSTANTS];
     costs  cost;
-    loads(s, angles, load_N);
+    dig_drive_loads(s->machine, angles, s->n, s->at, load_N);
     for (int j = 0; j < DIG_JOINTS; j++) {
         for (int d = 0; d < DIG_JOINTS; d++) {
             fill_costs(s, load_N, j, d, cost[j][d]);

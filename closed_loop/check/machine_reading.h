@@ -2,15 +2,13 @@
 // that counts the other way or from elsewhere, pressures of another cylinder, head for rod, another
 // unit. Discrete hypotheses, one likelihood: what each leaves of the balance of every joint.
 //
-// Coarse on purpose. A file may be wrong by some per cent and a sensor by some bar without anything
-// being mixed up, so what is left counts in shares of the load, after a constant force and a factor
-// of the load within bounds are taken off. What is finer is told by the fit (machine_check.h).
+// Coarse on purpose (drive_misfit.h): what is finer is told by the fit (machine_check.h).
 
 #ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H
 #define DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H
 
 #include "closed_loop/machine/machine_air.h"
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "core/machine.h"
 #include "core/recording.h"
 

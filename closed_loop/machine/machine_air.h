@@ -8,7 +8,7 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_AIR_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_AIR_H
 
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "core/machine.h"
 #include "core/sample.h"
 #include "core/units.h"

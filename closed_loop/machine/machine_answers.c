@@ -15,9 +15,8 @@ static const double least_variance = 1e-10;
 // In its scale: what is off by no more changes no gravel.
 static const double least_far = 0.02;
 
-// An effect with its parameters as last solved.
-static struct dig_model_effect effect_of(const struct dig_machine_search *const s,
-                                         const enum dig_effect_id id, const double probability)
+struct dig_model_effect dig_machine_effect(const struct dig_machine_search *const s,
+                                           const enum dig_effect_id id, const double probability)
 {
     const struct dig_effect *const effect = dig_effect_of(id);
     const size_t                   first  = dig_lines_first(&s->fit.lines, id);
@@ -223,7 +222,7 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                                            .log_evidence = solved.log_evidence };
     list_numbers(&s->fit.lines, effects, effect, &numbers);
     for (size_t e = 0; e < effects; e++) {
-        const struct dig_model_effect now = effect_of(s, effect[e].effect, 0.0);
+        const struct dig_model_effect now = dig_machine_effect(s, effect[e].effect, 0.0);
         answer->effect[e]                 = effect[e];
         for (size_t i = 0; i < now.parameters; i++) {
             answer->value[n++] = now.parameter[i].value;
@@ -268,93 +267,5 @@ void dig_machine_write_answers(struct dig_machine_search *const  s,
         const struct dig_model_effect *const alone = &finding->candidate[i].as;
         const bool found = finding->effects == 1 && finding->effect[0].effect == alone->effect;
         write_both(s, 1, found ? &finding->effect[0] : alone, finding);
-    }
-}
-
-// Every effect as it competed: by itself, or in the set found.
-void dig_machine_write_candidates(struct dig_machine_search *const s, const double inclusion[],
-                                  struct dig_machine_finding *const finding)
-{
-    finding->candidates = 0;
-    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
-        size_t                to     = finding->candidates++;
-        dig_fit_solve(&s->fit, 1U << e, &answer);
-        for (; to > 0 && finding->candidate[to - 1].log_evidence < answer.log_evidence; to--) {
-            finding->candidate[to] = finding->candidate[to - 1];
-        }
-        finding->candidate[to] = (struct dig_candidate){
-            .as           = effect_of(s, (enum dig_effect_id)e, inclusion[e]),
-            .log_evidence = answer.log_evidence,
-            .p_fit = answer.rest2 > s->noise2 * DIG_MACHINE_UNCLEAR_REST2 * s->fit.rows ? 0.0 : 1.0,
-            .error = (double)NAN,
-            .seen_in = DIG_PART_AIR,
-        };
-    }
-}
-
-void dig_machine_write_effects(struct dig_machine_search *const s, const double inclusion[],
-                               struct dig_machine_finding *const finding)
-{
-    struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
-    dig_fit_solve(&s->fit, s->set, &answer);
-    memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
-    finding->effects = 0;
-    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        if (((s->set >> e) & 1U) == 0) {
-            continue;
-        }
-        size_t to = finding->effects++;
-        for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
-            finding->effect[to] = finding->effect[to - 1];
-        }
-        finding->effect[to] = effect_of(s, (enum dig_effect_id)e, inclusion[e]);
-    }
-}
-
-// Soil falls out or stays as it likes: what each dig carried beyond what the digs have in common,
-// by the air before it. With payload alone where the set has none.
-void dig_machine_write_own_payload(struct dig_machine_search *const s,
-                                   double                           own_kg[DIG_MEASURED_MAX])
-{
-    static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
-    struct dig_fit_answer alone   = { .at = s->fit.at };
-    if ((s->set & carries) != 0) {
-        memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
-    } else {
-        dig_fit_solve(&s->fit, carries, &alone);
-    }
-    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
-        own_kg[d] = 0.0;
-    }
-    for (size_t c = 0; c < s->fit.lines.columns; c++) {
-        const struct dig_lines_column *const column = &s->fit.lines.column[c];
-        if (column->segment >= 0 && !s->air.segment[column->segment].after) {
-            own_kg[s->air.segment[column->segment].dig] = column->scale * s->fit.at[c];
-        }
-    }
-}
-
-// Effects that would do in the place of one of the set.
-void dig_machine_write_sets(const struct dig_machine_search *const s,
-                            struct dig_machine_finding *const      finding)
-{
-    const double found = dig_fit_evidence(&s->fit, s->set);
-    finding->sets      = 0;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
-            continue;
-        }
-        struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
-        for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
-            const unsigned instead = (s->set & ~(1U << e)) | (1U << f);
-            if (((s->set >> f) & 1U) == 0 &&
-                dig_fit_evidence(&s->fit, instead) > found - DIG_MACHINE_TIE) {
-                like.effect[like.effects++] = (enum dig_effect_id)f;
-            }
-        }
-        if (like.effects > 1) {
-            finding->set[finding->sets++] = like;
-        }
     }
 }

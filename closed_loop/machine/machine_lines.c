@@ -22,41 +22,46 @@ static bool is_carrying(const struct dig_air_segment *const segment)
     return segment->dig > 0 || segment->after;
 }
 
-void dig_lines_carry(const double own_kg, const struct dig_added_mass *const common,
+void dig_lines_carry(const double common[], const bool carries, const double own_kg,
                      struct dig_added_mass *const payload)
 {
-    const double share = own_kg / (telling_kg + fmax(common->mass_kg, 0.0));
-    payload->moment_kgm.x += share * common->moment_kgm.x;
-    payload->moment_kgm.y += share * common->moment_kgm.y;
+    struct dig_correction all = { .delay_s = 0.0 };
+    dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(common, &all);
+    const double share = own_kg / (telling_kg + fmax(all.payload.mass_kg, 0.0));
+    *payload           = carries ? all.payload : (struct dig_added_mass){ .mass_kg = 0.0 };
+    payload->moment_kgm.x += share * all.payload.moment_kgm.x;
+    payload->moment_kgm.y += share * all.payload.moment_kgm.y;
     payload->mass_kg += own_kg;
+}
+
+static void add_column(struct dig_lines *const lines, const enum dig_effect_id effect,
+                       const size_t parameter, const int segment, const double scale)
+{
+    lines->column[lines->columns++] =
+        (struct dig_lines_column){ effect, parameter, segment, scale };
 }
 
 static void list_columns(struct dig_lines *const lines, const double file_scale[])
 {
-    size_t n = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         const struct dig_effect *const effect = dig_effect_of((enum dig_effect_id)e);
         for (size_t p = 0; p < effect->parameters; p++) {
-            lines->column[n++] =
-                (struct dig_lines_column){ effect->id, p, -1, effect->parameter[p].scale };
+            add_column(lines, effect->id, p, -1, effect->parameter[p].scale);
         }
     }
     const double scale = own_share * dig_effect_of(DIG_EFFECT_PAYLOAD)->parameter[0].scale;
     for (size_t s = 0; s < lines->air->segments; s++) {
-        lines->column[n++] = (struct dig_lines_column){ DIG_EFFECT_PAYLOAD, 0, (int)s, scale };
+        add_column(lines, DIG_EFFECT_PAYLOAD, 0, (int)s, scale);
     }
     for (size_t p = 0; p < DIG_FILE_ERRORS; p++) {
         if (file_scale[p] > 0.0) {
-            lines->column[n++] =
-                (struct dig_lines_column){ DIG_EFFECT_UNLISTED, p, -1, file_scale[p] };
+            add_column(lines, DIG_EFFECT_UNLISTED, p, -1, file_scale[p]);
         }
     }
-    lines->columns = n;
 }
 
 static void number_digs(struct dig_lines *const lines)
 {
-    lines->digs = 0;
     for (size_t s = 0; s < lines->air->segments; s++) {
         const bool same = s > 0 && lines->air->segment[s].dig == lines->air->segment[s - 1].dig;
         lines->digs += same ? 0 : 1;
@@ -72,18 +77,19 @@ enum dig_status dig_lines_make(struct dig_air *const air, const double file_scal
     list_columns(lines, file_scale);
     number_digs(lines);
     const size_t n    = lines->columns;
+    const size_t one  = n * n + n;
     lines->trust      = malloc((air->rows + 1) * sizeof *lines->trust);
     lines->work       = malloc((3 + n) * (air->rows + 1) * sizeof *lines->work);
     lines->correction = malloc((air->segments + 1) * sizeof *lines->correction);
-    bool ok           = lines->trust != NULL && lines->work != NULL && lines->correction != NULL;
-    for (size_t d = 0; d < lines->digs; d++) {
-        lines->normal[d].slope2     = malloc((n * n + n) * sizeof(double));
-        lines->normal[d].slope_rest = lines->normal[d].slope2 + n * n;
-        ok                          = ok && lines->normal[d].slope2 != NULL;
-    }
-    if (!ok) {
+    lines->normals    = malloc((lines->digs + 1) * one * sizeof *lines->normals);
+    if (lines->trust == NULL || lines->work == NULL || lines->correction == NULL ||
+        lines->normals == NULL) {
         dig_lines_finish(lines);
         return DIG_ENOMEM;
+    }
+    for (size_t d = 0; d < lines->digs; d++) {
+        lines->normal[d].slope2     = lines->normals + d * one;
+        lines->normal[d].slope_rest = lines->normal[d].slope2 + n * n;
     }
     for (size_t r = 0; r < air->rows; r++) {
         lines->trust[r] = 1.0;
@@ -94,9 +100,7 @@ enum dig_status dig_lines_make(struct dig_air *const air, const double file_scal
 void dig_lines_finish(struct dig_lines *const lines)
 {
     if (lines != NULL) {
-        for (size_t d = 0; d < lines->digs; d++) {
-            free(lines->normal[d].slope2);
-        }
+        free(lines->normals);
         free(lines->trust);
         free(lines->work);
         free(lines->correction);
@@ -139,12 +143,15 @@ void dig_lines_correct(const struct dig_lines *const lines, const double at[],
     assert(lines != NULL && at != NULL && correction != NULL);
     double value[DIG_MACHINE_EFFECTS][DIG_MODEL_PARAMETERS_MAX];
     double file[DIG_FILE_ERRORS];
+    double own_kg[DIG_LINES_SEGMENTS_MAX];
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
         dig_effect_absent(dig_effect_of((enum dig_effect_id)e), value[e]);
     }
     for (size_t c = 0; c < lines->columns; c++) {
         const struct dig_lines_column *const column = &lines->column[c];
-        if (column->effect != DIG_EFFECT_UNLISTED && column->segment < 0) {
+        if (column->segment >= 0) {
+            own_kg[column->segment] = column->scale * at[c];
+        } else if (column->effect != DIG_EFFECT_UNLISTED) {
             value[column->effect][column->parameter] += column->scale * at[c];
         }
     }
@@ -153,18 +160,12 @@ void dig_lines_correct(const struct dig_lines *const lines, const double at[],
         correction[s] = (struct dig_correction){ .delay_s = 0.0 };
         dig_file_correct(file, &correction[s]);
         for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-            if (e != DIG_EFFECT_PAYLOAD || is_carrying(&lines->air->segment[s])) {
+            if (e != DIG_EFFECT_PAYLOAD) {
                 dig_effect_of((enum dig_effect_id)e)->correct(value[e], &correction[s]);
             }
         }
-    }
-    struct dig_correction common = { .delay_s = 0.0 };
-    dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(value[DIG_EFFECT_PAYLOAD], &common);
-    for (size_t c = 0; c < lines->columns; c++) {
-        if (lines->column[c].segment >= 0) {
-            dig_lines_carry(lines->column[c].scale * at[c], &common.payload,
-                            &correction[lines->column[c].segment].payload);
-        }
+        dig_lines_carry(value[DIG_EFFECT_PAYLOAD], is_carrying(&lines->air->segment[s]), own_kg[s],
+                        &correction[s].payload);
     }
 }
 
@@ -218,21 +219,18 @@ static void fill_slopes(struct dig_lines *const lines, const unsigned set, doubl
 
 static void sum_up(struct dig_lines *const lines, double rest[], double slope[])
 {
-    for (size_t r = 0; r < lines->air->rows; r++) {
-        rest[r] *= lines->trust[r];
-        for (size_t c = 0; c < lines->columns; c++) {
-            slope[c * lines->air->rows + r] *= lines->trust[r];
-        }
-    }
-
     const size_t n    = lines->columns;
     const size_t rows = lines->air->rows;
+    for (size_t r = 0; r < rows; r++) {
+        rest[r] *= lines->trust[r];
+        for (size_t c = 0; c < n; c++) {
+            slope[c * rows + r] *= lines->trust[r];
+        }
+    }
+    memset(lines->normals, 0, lines->digs * (n * n + n) * sizeof *lines->normals);
     for (size_t d = 0; d < lines->digs; d++) {
-        struct dig_lines_normal *const normal = &lines->normal[d];
-        normal->rows                          = 0;
-        normal->rest2                         = 0.0;
-        memset(normal->slope_rest, 0, n * sizeof(double));
-        memset(normal->slope2, 0, n * n * sizeof(double));
+        lines->normal[d].rows  = 0;
+        lines->normal[d].rest2 = 0.0;
     }
     for (size_t s = 0; s < lines->air->segments; s++) {
         struct dig_lines_normal *const      normal  = &lines->normal[lines->dig[s]];

@@ -51,14 +51,16 @@ struct dig_lines {
     size_t                  digs;                          // those of the air, in its order
     size_t                  dig[DIG_LINES_SEGMENTS_MAX];   // which of them a segment is of
     struct dig_lines_normal normal[DIG_MEASURED_MAX];      // of each dig
+    double                 *normals;                       // theirs
     double                 *trust;      // [rows] what each row's rest and slopes are multiplied by
     double                 *work;       // [3 + columns][rows]; no function keeps anything there
     struct dig_correction  *correction; // [segments]; the same
 };
 
-/// Adds a payload of one's own, which lies where the common one does; where there is hardly any, in
-/// the bucket's centre of mass.
-void dig_lines_carry(double own_kg, const struct dig_added_mass *common,
+/// Writes what a bucket carries: the common payload of these values, if it carries that, and one of
+/// its own, which lies where the common one does; where there is hardly any, in the bucket's centre
+/// of mass.
+void dig_lines_carry(const double common[], bool carries, double own_kg,
                      struct dig_added_mass *payload);
 
 /// Lines up the parameters at their absent values. The air must outlive it. file_scale: 1 sigma of

@@ -1,5 +1,5 @@
-// What the rooms of the search in free air work on together. Internal to machine_trace.c,
-// machine_select.c and machine_answers.c.
+// Inside of the machine side: its recordings, and what the sources of the search in free air work
+// on together (machine_search.c, machine_select.c, machine_answers.c).
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
@@ -7,6 +7,16 @@
 #include "closed_loop/machine/machine_drift.h"
 #include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_side.h"
+#include "closed_loop/machine_digs/machine_dig.h"
+
+struct dig_machine_side {
+    struct dig_machine          machine;
+    const struct dig_curve_set *set;
+    size_t                      digs;
+    struct dig_machine_dig      dig[DIG_MEASURED_MAX];
+    bool                        used[DIG_MEASURED_MAX];           // to trace in
+    double                      own_payload_kg[DIG_MEASURED_MAX]; // beyond the digs' common one
+};
 
 /// Air that leaves more than this of a row's variance is not understood.
 #define DIG_MACHINE_UNCLEAR_REST2 1.2
@@ -34,20 +44,9 @@ DIG_MUST_CHECK enum dig_status dig_machine_select(struct dig_machine_search *s);
 /// Whether what is left of the rows is more than their noise, or the set is makeshift.
 bool dig_machine_is_unclear(const struct dig_machine_search *s);
 
-/// Every effect as it competed, by itself; best first. inclusion: by effect.
-void dig_machine_write_candidates(struct dig_machine_search *s, const double inclusion[],
-                                  struct dig_machine_finding *finding);
-
-/// What each dig carried beyond what the digs have in common, by the air before it.
-void dig_machine_write_own_payload(struct dig_machine_search *s, double own_kg[DIG_MEASURED_MAX]);
-
-/// The effects of the set, most certain first.
-void dig_machine_write_effects(struct dig_machine_search *s, const double inclusion[],
-                               struct dig_machine_finding *finding);
-
-/// Effects that would do in the place of one of the set.
-void dig_machine_write_sets(const struct dig_machine_search *s,
-                            struct dig_machine_finding      *finding);
+/// An effect with its parameters as last solved.
+struct dig_model_effect dig_machine_effect(const struct dig_machine_search *s,
+                                           enum dig_effect_id id, double probability);
 
 /// No effect, with what the file may have wrong.
 void dig_machine_write_none(struct dig_machine_search *s, struct dig_machine_finding *finding);

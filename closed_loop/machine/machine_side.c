@@ -1,7 +1,6 @@
 #include "closed_loop/machine/machine_side.h"
 
-#include "closed_loop/machine/machine_lines.h"
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine/machine_search.h"
 #include "closed_loop/recordings/reading_noise.h"
 #include "estimator/effects/effect.h"
 #include "estimator/track/window.h"
@@ -9,8 +8,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-
-#include "closed_loop/machine/machine_side_private.h"
 
 // Why the moment of a dig is not told.
 static enum dig_status explain(const struct dig_machine_dig *const dig,
@@ -92,14 +89,9 @@ void dig_machine_side_destroy(struct dig_machine_side *const side)
     free(side);
 }
 
-// The common payload, which the first dig lacks, and the dig's own.
-static void carry(const struct dig_machine_side *const side, const double value[], const size_t dig,
-                  struct dig_added_mass *const payload)
+const struct dig_machine *dig_machine_side_machine(const struct dig_machine_side *const side)
 {
-    struct dig_correction common = { .delay_s = 0.0 };
-    dig_effect_of(DIG_EFFECT_PAYLOAD)->correct(value, &common);
-    *payload = dig > 0 ? common.payload : (struct dig_added_mass){ .mass_kg = 0.0 };
-    dig_lines_carry(side->own_payload_kg[dig], &common.payload, payload);
+    return &side->machine;
 }
 
 // What the effects of the machine among these, and what the file has wrong, say of one dig.
@@ -122,7 +114,8 @@ static enum dig_status correction_of(const struct dig_machine_side *const side,
             return DIG_ENOMATCH;
         }
         if (id == DIG_EFFECT_PAYLOAD) {
-            carry(side, value, dig, &sum.payload);
+            // The first dig lacks the common one.
+            dig_lines_carry(value, dig > 0, side->own_payload_kg[dig], &sum.payload);
         } else {
             dig_effect_of(id)->correct(value, &sum);
         }

@@ -25,6 +25,9 @@ dig_machine_side_create(const struct dig_machine *machine, const struct dig_curv
 
 void dig_machine_side_destroy(struct dig_machine_side *side);
 
+/// The machine, its sensors as noisy as its recordings are.
+const struct dig_machine *dig_machine_side_machine(const struct dig_machine_side *side);
+
 #define DIG_MACHINE_AT_ONCE 2 // effects of the machine in one answer
 #define DIG_MACHINE_ANSWERS (2 * (DIG_MACHINE_EFFECTS + 1))
 #define DIG_MACHINE_OTHERS  12

@@ -1,8 +1,6 @@
 #include "closed_loop/verdict/trace_work.h"
 
-#include "closed_loop/machine/machine_lines.h"
-#include "closed_loop/machine/machine_motion.h"
-#include "closed_loop/machine/machine_side_private.h"
+#include "closed_loop/verdict/air_motion.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -165,7 +163,8 @@ static enum dig_status offer_motion(const struct dig_machine_side *const side,
     struct dig_motion     motion;
     double                sigmas = 0.0;
     char                  how[64];
-    const enum dig_status status = dig_motion_best(&side->machine, a, b, &motion, &sigmas);
+    const enum dig_status status =
+        dig_motion_best(dig_machine_side_machine(side), a, b, &motion, &sigmas);
     if (status == DIG_OK) {
         (void)snprintf(how, sizeof how, " to and fro %s in free air%s, %.0f s",
                        motion.fast ? "fast" : "slowly", beside, DIG_MOTION_s);

@@ -240,24 +240,21 @@ TEST(each_dig_is_rid_of_the_payload_that_it_carried)
 // Soil lies in a bucket where soil has lain before; a hair of it tells nothing of where.
 TEST(a_payload_of_ones_own_lies_where_the_common_one_does)
 {
-    const struct dig_added_mass common = { 60.0, { 6.0, -12.0 }, 0.0 };
-    const struct dig_added_mass hair   = { 0.01, { 0.5, -0.5 }, 0.0 };
-    struct dig_added_mass       two    = common;
-    struct dig_added_mass       alone  = { 0.0, { 0.0, 0.0 }, 0.0 };
-    struct dig_added_mass       any    = { 0.0, { 0.0, 0.0 }, 0.0 };
-    struct dig_added_mass       rid    = common;
-    dig_lines_carry(80.0, &common, &two);
-    assert_close(two.mass_kg, 140.0, 1e-12);
-    assert_close(two.moment_kgm.x / two.mass_kg, 0.1, 0.01);
-    assert_close(two.moment_kgm.y / two.mass_kg, -0.2, 0.02);
-    dig_lines_carry(80.0, &common, &alone); // in the first dig, say
-    assert_close(alone.mass_kg, 80.0, 1e-12);
-    assert_close(alone.moment_kgm.y / alone.mass_kg, -0.2, 0.02);
-    dig_lines_carry(100.0, &hair, &any);
-    assert_close(any.moment_kgm.x / any.mass_kg, 0.0, 0.11);
-    dig_lines_carry(-60.0, &common, &rid); // fell out
-    assert_close(rid.mass_kg, 0.0, 1e-12);
-    assert_close(rid.moment_kgm.x, 0.0, 0.6);
+    const double          common[] = { 60.0, 6.0, -12.0 };
+    const double          hair[]   = { 0.01, 0.5, -0.5 };
+    struct dig_added_mass payload  = { 0.0, { 0.0, 0.0 }, 0.0 };
+    dig_lines_carry(common, true, 80.0, &payload);
+    assert_close(payload.mass_kg, 140.0, 1e-12);
+    assert_close(payload.moment_kgm.x / payload.mass_kg, 0.1, 0.01);
+    assert_close(payload.moment_kgm.y / payload.mass_kg, -0.2, 0.02);
+    dig_lines_carry(common, false, 80.0, &payload); // in the first dig, say
+    assert_close(payload.mass_kg, 80.0, 1e-12);
+    assert_close(payload.moment_kgm.y / payload.mass_kg, -0.2, 0.02);
+    dig_lines_carry(hair, false, 100.0, &payload);
+    assert_close(payload.moment_kgm.x / payload.mass_kg, 0.0, 0.11);
+    dig_lines_carry(common, true, -60.0, &payload); // fell out
+    assert_close(payload.mass_kg, 0.0, 1e-12);
+    assert_close(payload.moment_kgm.x, 0.0, 0.6);
 }
 
 // An effect of many parameters may be weak, too: it is not given to one of fewer.

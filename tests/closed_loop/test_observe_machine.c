@@ -1,9 +1,9 @@
-// Tests for closed_loop/recordings/observe_machine.c: machine recordings from the rig's machine
+// Tests for closed_loop/machine_digs/observe_machine.c: machine recordings from the rig's machine
 // (virtual work), against the force recordings they were made of.
 
-#include "closed_loop/recordings/observe_machine.h"
+#include "closed_loop/machine_digs/observe_machine.h"
 
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "closed_loop/recordings/observe.h"
 #include "tests/made_table.h"
 #include "tests/read.h"

@@ -1,6 +1,6 @@
-// Tests for closed_loop/recordings/pose_jump.c
+// Tests for closed_loop/machine_digs/pose_jump.c
 
-#include "closed_loop/recordings/pose_jump.h"
+#include "closed_loop/machine_digs/pose_jump.h"
 
 #include "tests/testlib.h"
 

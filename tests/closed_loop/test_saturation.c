@@ -1,6 +1,6 @@
-// Tests for closed_loop/recordings/saturation.c
+// Tests for closed_loop/machine_digs/saturation.c
 
-#include "closed_loop/recordings/saturation.h"
+#include "closed_loop/machine_digs/saturation.h"
 
 #include "files/machine_yaml.h"
 #include "tests/model_front.h"

@@ -1,7 +1,7 @@
 #include "tools/digloop/recording.h"
 
+#include "closed_loop/machine_digs/saturation.h"
 #include "closed_loop/recordings/observe.h"
-#include "closed_loop/recordings/saturation.h"
 #include "core/sample.h"
 #include "core/text.h"
 #include "estimator/approach/approach_slots.h"

@@ -4,7 +4,7 @@
 #ifndef DIG_TOOLS_DIGLOOP_RECORDING_H
 #define DIG_TOOLS_DIGLOOP_RECORDING_H
 
-#include "closed_loop/recordings/observe_machine.h"
+#include "closed_loop/machine_digs/observe_machine.h"
 #include "core/curve.h"
 #include "core/error.h"
 #include "core/machine.h"

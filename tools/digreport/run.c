@@ -1,8 +1,8 @@
 #include "tools/digreport/run.h"
 
 #include "closed_loop/accuracy/score.h"
+#include "closed_loop/machine_digs/observe_machine.h"
 #include "closed_loop/recordings/observe.h"
-#include "closed_loop/recordings/observe_machine.h"
 #include "core/name.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"

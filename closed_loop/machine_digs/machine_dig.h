@@ -7,8 +7,8 @@
 //
 // Where the tooth is below the ground before or after, as in another dig, there is no air.
 
-#ifndef DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
-#define DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
+#ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_MACHINE_DIG_H
+#define DIG_CLOSED_LOOP_MACHINE_DIGS_MACHINE_DIG_H
 
 #include "closed_loop/recordings/measured.h"
 #include "core/curve.h"
@@ -85,4 +85,4 @@ dig_machine_dig_measure(const struct dig_machine *machine, const struct dig_curv
                         const struct dig_machine_dig *dig, const struct dig_correction *correction,
                         enum dig_measure how, struct dig_measured *measured);
 
-#endif // DIG_CLOSED_LOOP_RECORDINGS_MACHINE_DIG_H
+#endif // DIG_CLOSED_LOOP_MACHINE_DIGS_MACHINE_DIG_H

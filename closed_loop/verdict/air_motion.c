@@ -1,7 +1,7 @@
-#include "closed_loop/machine/machine_motion.h"
+#include "closed_loop/verdict/air_motion.h"
 
 #include "closed_loop/machine/machine_air.h"
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "core/units.h"
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/dynamics.h"

@@ -1,4 +1,4 @@
-#include "closed_loop/recordings/observe_machine.h"
+#include "closed_loop/machine_digs/observe_machine.h"
 
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"

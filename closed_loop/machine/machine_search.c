@@ -2,7 +2,6 @@
 // effects that explain them.
 
 #include "closed_loop/machine/machine_search.h"
-#include "closed_loop/machine/machine_side_private.h"
 #include "core/chance.h"
 
 #include <assert.h>
@@ -75,6 +74,93 @@ static double evidence_of_all(const struct dig_machine_search *const s)
            0.5 * (left2 - s->fit.rest2) / s->fit.s2;
 }
 
+// Every effect as it competed: by itself, or in the set found.
+static void write_candidates(struct dig_machine_search *const s, const double inclusion[],
+                             struct dig_machine_finding *const finding)
+{
+    finding->candidates = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
+        size_t                to     = finding->candidates++;
+        dig_fit_solve(&s->fit, 1U << e, &answer);
+        for (; to > 0 && finding->candidate[to - 1].log_evidence < answer.log_evidence; to--) {
+            finding->candidate[to] = finding->candidate[to - 1];
+        }
+        finding->candidate[to] = (struct dig_candidate){
+            .as           = dig_machine_effect(s, (enum dig_effect_id)e, inclusion[e]),
+            .log_evidence = answer.log_evidence,
+            .p_fit = answer.rest2 > s->noise2 * DIG_MACHINE_UNCLEAR_REST2 * s->fit.rows ? 0.0 : 1.0,
+            .error = (double)NAN,
+            .seen_in = DIG_PART_AIR,
+        };
+    }
+}
+
+static void write_effects(struct dig_machine_search *const s, const double inclusion[],
+                          struct dig_machine_finding *const finding)
+{
+    struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
+    dig_fit_solve(&s->fit, s->set, &answer);
+    memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
+    finding->effects = 0;
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0) {
+            continue;
+        }
+        size_t to = finding->effects++;
+        for (; to > 0 && finding->effect[to - 1].probability < inclusion[e]; to--) {
+            finding->effect[to] = finding->effect[to - 1];
+        }
+        finding->effect[to] = dig_machine_effect(s, (enum dig_effect_id)e, inclusion[e]);
+    }
+}
+
+// Soil falls out or stays as it likes: what each dig carried beyond what the digs have in common,
+// by the air before it. With payload alone where the set has none.
+static void write_own_payload(struct dig_machine_search *const s, double own_kg[DIG_MEASURED_MAX])
+{
+    static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
+    struct dig_fit_answer alone   = { .at = s->fit.at };
+    if ((s->set & carries) != 0) {
+        memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
+    } else {
+        dig_fit_solve(&s->fit, carries, &alone);
+    }
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        own_kg[d] = 0.0;
+    }
+    for (size_t c = 0; c < s->fit.lines.columns; c++) {
+        const struct dig_lines_column *const column = &s->fit.lines.column[c];
+        if (column->segment >= 0 && !s->air.segment[column->segment].after) {
+            own_kg[s->air.segment[column->segment].dig] = column->scale * s->fit.at[c];
+        }
+    }
+}
+
+// Effects that would do in the place of one of the set.
+static void write_sets(const struct dig_machine_search *const s,
+                       struct dig_machine_finding *const      finding)
+{
+    const double found = dig_fit_evidence(&s->fit, s->set);
+    finding->sets      = 0;
+    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (((s->set >> e) & 1U) == 0 || finding->sets == DIG_TRACE_SETS_MAX) {
+            continue;
+        }
+        struct dig_candidate_set like = { .effects = 1, .effect = { (enum dig_effect_id)e } };
+        for (unsigned f = 0; f < DIG_MACHINE_EFFECTS; f++) {
+            const unsigned instead = (s->set & ~(1U << e)) | (1U << f);
+            if (((s->set >> f) & 1U) == 0 &&
+                dig_fit_evidence(&s->fit, instead) > found - DIG_MACHINE_TIE) {
+                like.effect[like.effects++] = (enum dig_effect_id)f;
+            }
+        }
+        if (like.effects > 1) {
+            finding->set[finding->sets++] = like;
+        }
+    }
+}
+
 // Where pressures that drift explain no less than the effects found, these have no claim to it.
 static void doubt_names(struct dig_machine_search *const s)
 {
@@ -97,12 +183,12 @@ static void write_finding(struct dig_machine_search *const s, const uint64_t see
     memcpy(finding->residual_air_of, s->none_of, sizeof s->none_of);
     finding->significant = s->set != 0 || unclear;
     bootstrap(s, seed, inclusion);
-    dig_machine_write_candidates(s, inclusion, finding);
-    dig_machine_write_own_payload(s, own_payload_kg);
+    write_candidates(s, inclusion, finding);
+    write_own_payload(s, own_payload_kg);
     if (!unclear) {
         dig_machine_write_none(s, finding);
-        dig_machine_write_effects(s, inclusion, finding);
-        dig_machine_write_sets(s, finding);
+        write_effects(s, inclusion, finding);
+        write_sets(s, finding);
         dig_machine_write_answers(s, finding);
     }
     finding->p_complete =

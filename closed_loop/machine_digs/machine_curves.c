@@ -1,7 +1,7 @@
 // The curves of one machine recording: the estimator's wrench, window and resampling, with rates
 // that are centred because the whole dig is at hand.
 
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "closed_loop/recordings/path_depth.h"
 #include "core/entry_set.h"
 #include "core/observation.h"
@@ -39,17 +39,12 @@ static void put_back(const struct dig_machine_dig *const dig, const size_t at, c
     }
     const double f =
         fmin(fmax((time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]), 0.0), 1.0);
-    const struct dig_rates *const a = &dig->rates[i];
-    const struct dig_rates *const b = &dig->rates[i + 1];
 
     *sample = dig->sample[at];
-    *rates  = *a;
+    *rates  = dig_rates_between(&dig->rates[i], &dig->rates[i + 1], f);
     for (size_t j = 0; j < DIG_JOINTS; j++) {
         const size_t q   = (size_t)DIG_SIGNAL_BOOM_rad + j;
         sample->value[q] = (1.0 - f) * dig->sample[i].value[q] + f * dig->sample[i + 1].value[q];
-        rates->velocity_radps[j] = (1.0 - f) * a->velocity_radps[j] + f * b->velocity_radps[j];
-        rates->acceleration_radps2[j] =
-            (1.0 - f) * a->acceleration_radps2[j] + f * b->acceleration_radps2[j];
     }
 }
 

@@ -3,8 +3,8 @@
 // either correction is compared, row by row as free air is traced
 // (closed_loop/machine/machine_air.h).
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_MOTION_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_MOTION_H
+#ifndef DIG_CLOSED_LOOP_VERDICT_AIR_MOTION_H
+#define DIG_CLOSED_LOOP_VERDICT_AIR_MOTION_H
 
 #include "core/machine.h"
 #include "core/status.h"
@@ -36,4 +36,4 @@ DIG_MUST_CHECK enum dig_status dig_motion_best(const struct dig_machine    *mach
                                                const struct dig_correction *b,
                                                struct dig_motion *best, double *sigmas);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_MOTION_H
+#endif // DIG_CLOSED_LOOP_VERDICT_AIR_MOTION_H

@@ -1,6 +1,6 @@
-// Tests for closed_loop/machine/machine_motion.c
+// Tests for closed_loop/verdict/air_motion.c
 
-#include "closed_loop/machine/machine_motion.h"
+#include "closed_loop/verdict/air_motion.h"
 
 #include "core/units.h"
 #include "tests/read.h"

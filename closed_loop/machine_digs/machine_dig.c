@@ -1,7 +1,8 @@
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 
-#include "closed_loop/recordings/machine_samples.h"
-#include "closed_loop/recordings/pose_jump.h"
+#include "closed_loop/machine_digs/free_air.h"
+#include "closed_loop/machine_digs/machine_samples.h"
+#include "closed_loop/machine_digs/pose_jump.h"
 #include "core/sample.h"
 #include "estimator/approach/approach_route.h"
 #include "estimator/track/recorded_dig.h"
@@ -9,12 +10,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-
-// Kept clear of the soil at both ends of the air: blends of the motion, and the rates' half.
-static const double clear_s = 0.25;
-
-// And after the dump, as pressures may be late.
-static const double dumped_s = 0.6;
 
 // In tooth lengths: spacing of the vertices, how far a path may lie off its trajectory (the
 // estimator's path_limit_m on the rig), and how far off a start may be turned beyond its range.
@@ -25,13 +20,6 @@ static const double turned_share  = 0.12;
 // The ends of a dig are blended and may be cut: they do not tell its pace.
 static const double blended_share = 0.05;
 
-// A dump opens the bucket by this much at least, and is over once it closes again by this, rad.
-static const double dump_rad   = 0.12;
-static const double closed_rad = 0.02;
-
-// Of the depth of a dig: deeper below its ground the bucket digs, higher above it does not.
-static const double part_share = 0.3;
-
 struct dig_path_point dig_machine_dig_point(const struct dig_curve_set *const   set,
                                             const struct dig_machine_dig *const dig,
                                             const struct dig_front *const       front)
@@ -40,12 +28,6 @@ struct dig_path_point dig_machine_dig_point(const struct dig_curve_set *const   
     return dig_recorded_dig_point(set, dig->lambda, pin->x, pin->y,
                                   front->attitude_rad[DIG_JOINT_BUCKET]);
 }
-
-struct vertices {
-    size_t                 count;
-    struct dig_path_point *point;
-    size_t                *sample; // each vertex's
-};
 
 static struct dig_path_point point_of(const struct dig_machine *const     machine,
                                       const struct dig_curve_set *const   set,
@@ -58,7 +40,7 @@ static struct dig_path_point point_of(const struct dig_machine *const     machin
 
 // The path of the whole recording.
 static void lay_out(const struct dig_machine *const machine, const struct dig_curve_set *const set,
-                    const struct dig_machine_dig *const dig, struct vertices *const v)
+                    const struct dig_machine_dig *const dig, struct dig_vertices *const v)
 {
     const double spacing_m = spacing_share * set->tooth_m;
     v->count               = 0;
@@ -84,7 +66,7 @@ static double turn_at(const struct dig_route *const route, const struct dig_path
 
 // How far the path from a vertex on lies off the route begun there, turned as there: rms, in which
 // what is missing of the route counts whole. end: the vertex at which the route is done.
-static double off_route_m(const struct dig_route *const route, const struct vertices *const v,
+static double off_route_m(const struct dig_route *const route, const struct dig_vertices *const v,
                           const size_t start, const double tooth_m, const double enough_m,
                           size_t *const end)
 {
@@ -119,8 +101,8 @@ struct found {
 };
 
 // Tries every vertex as the start of every trajectory asked for.
-static struct found search(const struct dig_curve_set *const set, const struct vertices *const v,
-                           const int asked)
+static struct found search(const struct dig_curve_set *const set,
+                           const struct dig_vertices *const v, const int asked)
 {
     struct found best = { .off_m = INFINITY, .trajectory = -1 };
     for (size_t t = 0; t < set->trajectories; t++) {
@@ -160,74 +142,6 @@ struct dig_track dig_machine_dig_fit(const struct dig_curve_set *const   set,
     return dig_track_fit(&route, &path, limit_share * set->tooth_m);
 }
 
-size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const double time_s)
-{
-    size_t i = 0;
-    while (i < dig->samples && dig->time_s[i] < time_s) {
-        i++;
-    }
-    return i;
-}
-
-static double phi_at(const struct dig_sample *const sample)
-{
-    return sample->value[DIG_SIGNAL_BOOM_rad] + sample->value[DIG_SIGNAL_ARM_rad] +
-           sample->value[DIG_SIGNAL_BUCKET_rad];
-}
-
-// The load is gone once the bucket has opened and begins to close again.
-static size_t find_dumped(const struct dig_machine_dig *const dig, const size_t from,
-                          const size_t to)
-{
-    double least_rad = INFINITY;
-    double most_rad  = -INFINITY;
-    size_t most      = dig->samples;
-    for (size_t i = from; i < to; i++) {
-        const double phi_rad = phi_at(&dig->sample[i]);
-        least_rad            = fmin(least_rad, phi_rad);
-        if (phi_rad > most_rad) {
-            most_rad = phi_rad;
-            most     = i;
-        }
-        if (most_rad < least_rad + dump_rad) {
-            most_rad = phi_rad; // still closed: the most is counted from where it is least
-        } else if (phi_rad < most_rad - closed_rad) {
-            return dig_machine_dig_sample_at(dig, dig->time_s[most] + dumped_s);
-        }
-    }
-    return dig->samples;
-}
-
-static double tooth_z_m(const struct dig_path_point *const at, const double tooth_m)
-{
-    return at->z_m - tooth_m * cos(at->turn_m / tooth_m);
-}
-
-// Ends the air where the bucket goes to another dig: below the ground of this one, by a part of
-// what it is deep. The ground itself is known to such a part.
-static void leave_out_other_digs(const struct vertices *const v, const struct found *const found,
-                                 const double tooth_m, struct dig_machine_dig *const dig)
-{
-    const double ground_m  = tooth_z_m(&v->point[found->start], tooth_m);
-    double       deepest_m = ground_m;
-    for (size_t i = found->start; i < found->end; i++) {
-        deepest_m = fmin(deepest_m, tooth_z_m(&v->point[i], tooth_m));
-    }
-    const double part_m = part_share * (ground_m - deepest_m);
-    size_t       above  = 0; // the last sample that is clear of the ground
-    for (size_t i = 0; i < v->count; i++) {
-        const double off_m = tooth_z_m(&v->point[i], tooth_m) - ground_m;
-        if (off_m > part_m) {
-            above = v->sample[i];
-        } else if (off_m < -part_m && v->sample[i] < dig->before_end) {
-            dig->before = find_dumped(dig, v->sample[i], dig->before_end);
-        } else if (off_m < -part_m && v->sample[i] >= dig->after) {
-            dig->after_end = above;
-            return;
-        }
-    }
-}
-
 // middle_s: rig time from a twentieth of the path to the end less that.
 static double pace_of(const struct dig_curve_set *const   set,
                       const struct dig_machine_dig *const dig, const double middle_s)
@@ -240,7 +154,7 @@ static double pace_of(const struct dig_curve_set *const   set,
 
 // Where along the recording the trajectory begins and ends.
 static void split(const struct dig_machine *const machine, const struct dig_curve_set *const set,
-                  const struct dig_route *const route, const struct vertices *const v,
+                  const struct dig_route *const route, const struct dig_vertices *const v,
                   const struct found *const found, struct dig_machine_dig *const dig)
 {
     // The last sample still at the start, and the first at the end.
@@ -270,17 +184,13 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
             break;
         }
     }
-    dig->pace              = pace_of(set, dig, (to_s - from_s) / sqrt(dig->lambda));
-    const double contact_s = dig->time_s[dig->contact < dig->samples ? dig->contact : 0];
-    dig->before_end        = dig_machine_dig_sample_at(dig, contact_s - clear_s);
-    dig->after             = find_dumped(dig, dig->end, dig->samples);
-    dig->after_end         = dig->samples;
-    leave_out_other_digs(v, found, set->tooth_m, dig);
+    dig->pace = pace_of(set, dig, (to_s - from_s) / sqrt(dig->lambda));
+    dig_free_air_find(v, found->start, found->end, set->tooth_m, dig);
 }
 
 static enum dig_status place(const struct dig_machine *const   machine,
                              const struct dig_curve_set *const set, const int asked,
-                             struct vertices *const v, struct dig_machine_dig *const dig,
+                             struct dig_vertices *const v, struct dig_machine_dig *const dig,
                              struct dig_error *const error)
 {
     lay_out(machine, set, dig, v);
@@ -330,8 +240,8 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
                                      struct dig_error *const error)
 {
     assert(machine != NULL && set != NULL && recording != NULL && dig != NULL);
-    const size_t    rows = recording->rows + 1;
-    struct vertices v    = {
+    const size_t        rows = recording->rows + 1;
+    struct dig_vertices v    = {
            .point  = malloc(rows * sizeof *v.point),
            .sample = malloc(rows * sizeof *v.sample),
     };

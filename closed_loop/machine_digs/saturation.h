@@ -1,7 +1,7 @@
 // Pressures that a sensor or a relief valve cut off: what is missing there cannot be traced.
 
-#ifndef DIG_CLOSED_LOOP_RECORDINGS_SATURATION_H
-#define DIG_CLOSED_LOOP_RECORDINGS_SATURATION_H
+#ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_SATURATION_H
+#define DIG_CLOSED_LOOP_MACHINE_DIGS_SATURATION_H
 
 #include "core/machine.h"
 #include "core/recording.h"
@@ -30,4 +30,4 @@ double dig_saturation_log10_chance(const struct dig_machine_recording *recording
 bool dig_saturation_find(const struct dig_machine           *machine,
                          const struct dig_machine_recording *recording, struct dig_clip *clip);
 
-#endif // DIG_CLOSED_LOOP_RECORDINGS_SATURATION_H
+#endif // DIG_CLOSED_LOOP_MACHINE_DIGS_SATURATION_H

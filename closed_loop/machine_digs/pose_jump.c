@@ -1,4 +1,4 @@
-#include "closed_loop/recordings/pose_jump.h"
+#include "closed_loop/machine_digs/pose_jump.h"
 
 #include "core/machine.h"
 

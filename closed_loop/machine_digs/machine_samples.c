@@ -1,4 +1,4 @@
-#include "closed_loop/recordings/machine_samples.h"
+#include "closed_loop/machine_digs/machine_samples.h"
 
 #include "core/sample.h"
 #include "estimator/wrench/cylinder.h"
@@ -111,4 +111,13 @@ enum dig_status dig_machine_samples_take(const struct dig_machine *const        
                                "%zu samples with all angles and the bucket cylinder's pressures, "
                                "expected 50 at least",
                                dig->samples);
+}
+
+size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const double time_s)
+{
+    size_t i = 0;
+    while (i < dig->samples && dig->time_s[i] < time_s) {
+        i++;
+    }
+    return i;
 }

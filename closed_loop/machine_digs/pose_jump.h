@@ -1,8 +1,8 @@
 // A joint that is elsewhere from one sample to the next: recordings put together in one file, or a
 // sensor that lost its zero. Free air across it shows a motion that no machine made.
 
-#ifndef DIG_CLOSED_LOOP_RECORDINGS_POSE_JUMP_H
-#define DIG_CLOSED_LOOP_RECORDINGS_POSE_JUMP_H
+#ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_POSE_JUMP_H
+#define DIG_CLOSED_LOOP_MACHINE_DIGS_POSE_JUMP_H
 
 #include "core/sample.h"
 
@@ -20,4 +20,4 @@ struct dig_pose_jump {
 bool dig_pose_jump_find(size_t samples, const struct dig_sample sample[],
                         struct dig_pose_jump *jump);
 
-#endif // DIG_CLOSED_LOOP_RECORDINGS_POSE_JUMP_H
+#endif // DIG_CLOSED_LOOP_MACHINE_DIGS_POSE_JUMP_H

@@ -1,4 +1,4 @@
-#include "closed_loop/recordings/saturation.h"
+#include "closed_loop/machine_digs/saturation.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 // The digs of a machine recording as the matcher wants them: the estimator goes through the samples
 // as it does on the machine, recognises each dig, and lays it along its trajectory at rig scale.
 
-#ifndef DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_MACHINE_H
-#define DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_MACHINE_H
+#ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_OBSERVE_MACHINE_H
+#define DIG_CLOSED_LOOP_MACHINE_DIGS_OBSERVE_MACHINE_H
 
 #include "core/curve.h"
 #include "core/error.h"
@@ -44,4 +44,4 @@ DIG_MUST_CHECK enum dig_status dig_observe_machine(const struct dig_machine     
 /// NULL and a zeroed struct are allowed.
 void dig_observed_digs_finish(struct dig_observed_digs *digs);
 
-#endif // DIG_CLOSED_LOOP_RECORDINGS_OBSERVE_MACHINE_H
+#endif // DIG_CLOSED_LOOP_MACHINE_DIGS_OBSERVE_MACHINE_H

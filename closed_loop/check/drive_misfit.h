@@ -1,0 +1,35 @@
+// How well two columns of pressures, taken for the chambers of a drive, hold what the drive bears
+// in free air.
+//
+// Coarse on purpose. A file may be wrong by some per cent and a sensor by some bar without anything
+// being mixed up, so what is left counts in shares of the load, after a constant force and a factor
+// of the load within bounds are taken off.
+
+#ifndef DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
+#define DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
+
+#include "closed_loop/check/machine_reading.h"
+#include "closed_loop/machine/machine_air.h"
+#include "core/machine.h"
+
+#include <stddef.h>
+
+/// What each drive would have to push at n instants while their angles, which are in radians, are
+/// read so: load_N[n * joint + instant]; NaN where the joint cannot stand like that.
+void dig_drive_loads(const struct dig_machine *machine, const struct dig_reading *reading, size_t n,
+                     const struct dig_air_point at[], double load_N[]);
+
+/// A drive, and the signals that its chambers are read from.
+struct dig_drive_read {
+    const struct dig_cylinder *cylinder;
+    size_t                     head, rod;
+};
+
+/// Minus the log likelihood of the readings of n instants, so many times as large as they say, for
+/// each such factor, by the load at each of them. poses: so many of the instants count as seen each
+/// for itself.
+void dig_drive_misfits(const struct dig_drive_read *read, size_t n, const struct dig_air_point at[],
+                       const double load_N[], double poses, size_t factors, const double factor[],
+                       double misfits[]);
+
+#endif // DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H

@@ -1,0 +1,16 @@
+// What one dig of a trajectory scatters by: that of the table's beds, of a ground whose depth is
+// open, and of the sensors.
+
+#ifndef DIG_CLOSED_LOOP_FIT_WHITENED_GROUP_H
+#define DIG_CLOSED_LOOP_FIT_WHITENED_GROUP_H
+
+#include "closed_loop/fit/whitened_digs.h"
+
+/// Fills features, size, noise of the sensors, whitening and log_det of a group whose digs are
+/// known, from their features; place: as dig_whitened_digs_make(). DIG_ENOMATCH: the digs have not
+/// half a channel in common.
+DIG_MUST_CHECK enum dig_status dig_whitened_group_fill(struct dig_whitened_digs *batch, size_t g,
+                                                       const double feature[][DIG_FEATURES],
+                                                       const double place[DIG_AXES]);
+
+#endif // DIG_CLOSED_LOOP_FIT_WHITENED_GROUP_H
