@@ -30,10 +30,8 @@ static struct products products_of(const struct dig_curve_set *const    set,
     double          moved[DIG_FEATURE_BINS] = { 0.0 }; // d times one sigma of e, over the bin
     struct products of                      = { 0.0, 0.0 };
     for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-        size_t from;
-        size_t to;
-        dig_feature_bin(b, &from, &to);
-        for (size_t k = from; k < to; k++) {
+        const struct dig_bin points = dig_feature_bin(b);
+        for (size_t k = points.from; k < points.to; k++) {
             const double at     = (double)k / (DIG_CURVE_POINTS - 1);
             const bool   dug    = at >= dig->first && at <= dig->last;
             const double time_s = dug ? dig_score_time_s(set, t, k) : 0.0;

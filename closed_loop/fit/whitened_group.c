@@ -1,6 +1,7 @@
 #include "closed_loop/fit/whitened_group.h"
 
 #include "closed_loop/model/approach_change.h"
+#include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
@@ -43,17 +44,15 @@ static void intersect(const struct dig_whitened_digs *const batch, const size_t 
 static double sensor_variance(const struct dig_whitened_digs *const batch, const size_t g,
                               const size_t f)
 {
-    double sum = 0.0;
-    double n   = 0.0;
-    size_t from;
-    size_t to;
-    dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
+    double               sum    = 0.0;
+    double               n      = 0.0;
+    const struct dig_bin points = dig_feature_bin(f % DIG_FEATURE_BINS);
     for (size_t i = 0; i < batch->digs; i++) {
         if (batch->dig[i].group != g) {
             continue;
         }
         const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
-        for (size_t k = from; k < to; k++) {
+        for (size_t k = points.from; k < points.to; k++) {
             const double sigma = dig->sigma[f / DIG_FEATURE_BINS][k];
             sum += sigma * sigma;
             n += 1.0;
@@ -80,13 +79,12 @@ static double measure_size(const struct dig_whitened_digs *const batch, const si
         return 1.0;
     }
     // The whole dig's amplitude follows from the part that was measured as the table's does.
-    const struct dig_gravel gravel = dig_response_surface_gravel(batch->soil->surface, place);
-    double                  table[DIG_FEATURES];
-    double                  whole[DIG_FORCE_CHANNELS];
-    double                  part[DIG_FORCE_CHANNELS];
+    double table[DIG_FEATURES];
+    double whole[DIG_FORCE_CHANNELS];
+    double part[DIG_FORCE_CHANNELS];
     dig_response_surface_features(batch->soil->surface, group->trajectory, place, table, whole);
     dig_features_amplitude(table, mask, part);
-    const double strength = log(whole[DIG_CHANNEL_MY_Nm] / gravel.value[DIG_AXIS_DENSITY_kgpm3]);
+    const double strength = dig_soil_strength(batch->soil->surface, place, whole);
     const double factor   = sqrt(dig_scatter_factor(batch->scatter, group->trajectory, strength));
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         amplitude[c] *= factor * whole[c] / fmax(part[c], 1e-3 * whole[c]);

@@ -23,15 +23,13 @@ static void fill_speeds(struct dig_soil *const soil)
         double speed[DIG_CURVE_POINTS];
         dig_effect_speeds(set, t, speed);
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-            size_t from;
-            size_t to;
-            double sum = 0.0;
-            dig_feature_bin(b, &from, &to);
-            for (size_t k = from; k < to; k++) {
+            double               sum    = 0.0;
+            const struct dig_bin points = dig_feature_bin(b);
+            for (size_t k = points.from; k < points.to; k++) {
                 soil->speed[t][k] = speed[k];
                 sum += log(speed[k]);
             }
-            soil->bin_speed[t][b] = exp(sum / (double)(to - from));
+            soil->bin_speed[t][b] = exp(sum / (double)(points.to - points.from));
         }
     }
 }

@@ -5,11 +5,11 @@
 
 static const double least_amplitude = 1e-12;
 
-void dig_feature_bin(const size_t bin, size_t *const from, size_t *const to)
+struct dig_bin dig_feature_bin(const size_t bin)
 {
     assert(bin < DIG_FEATURE_BINS);
-    *from = bin * DIG_CURVE_POINTS / DIG_FEATURE_BINS;
-    *to   = (bin + 1) * DIG_CURVE_POINTS / DIG_FEATURE_BINS;
+    return (struct dig_bin){ bin * DIG_CURVE_POINTS / DIG_FEATURE_BINS,
+                             (bin + 1) * DIG_CURVE_POINTS / DIG_FEATURE_BINS };
 }
 
 void dig_features_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
@@ -17,14 +17,12 @@ void dig_features_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
 {
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-            size_t from;
-            size_t to;
-            dig_feature_bin(b, &from, &to);
-            double sum = 0.0;
-            for (size_t k = from; k < to; k++) {
+            const struct dig_bin points = dig_feature_bin(b);
+            double               sum    = 0.0;
+            for (size_t k = points.from; k < points.to; k++) {
                 sum += curve[c][k];
             }
-            feature[c * DIG_FEATURE_BINS + b] = sum / (double)(to - from);
+            feature[c * DIG_FEATURE_BINS + b] = sum / (double)(points.to - points.from);
         }
     }
 }
@@ -48,12 +46,10 @@ void dig_features_mask(const bool measured[DIG_FORCE_CHANNELS], const double fir
     const double slack = 1.0 / (DIG_CURVE_POINTS - 1);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-            size_t from;
-            size_t to;
-            dig_feature_bin(b, &from, &to);
+            const struct dig_bin points = dig_feature_bin(b);
             mask[c * DIG_FEATURE_BINS + b] =
-                measured[c] && (double)from / (DIG_CURVE_POINTS - 1) >= first - slack &&
-                (double)(to - 1) / (DIG_CURVE_POINTS - 1) <= last + slack;
+                measured[c] && (double)points.from / (DIG_CURVE_POINTS - 1) >= first - slack &&
+                (double)(points.to - 1) / (DIG_CURVE_POINTS - 1) <= last + slack;
         }
     }
 }

@@ -11,8 +11,11 @@
 #define DIG_FEATURE_BINS 10
 #define DIG_FEATURES     ((size_t)DIG_FORCE_CHANNELS * DIG_FEATURE_BINS) // channel by channel
 
-/// Points [*from, *to) of the progress grid that make a bin.
-void dig_feature_bin(size_t bin, size_t *from, size_t *to);
+/// Points [from, to) of the progress grid that make a bin.
+struct dig_bin {
+    size_t from, to;
+};
+struct dig_bin dig_feature_bin(size_t bin);
 
 /// Averages the channels of a curve.
 void dig_features_of(const double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],

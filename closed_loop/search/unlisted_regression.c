@@ -172,10 +172,8 @@ static void tell_along(const struct dig_curve_set *const set, const struct dig_m
     dig_regressors_along(set, dig, state);
     memset(value, 0, DIG_BASES * sizeof value[0]);
     for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-        size_t from;
-        size_t to;
-        dig_feature_bin(b, &from, &to);
-        for (size_t k = from; k < to; k++) {
+        const struct dig_bin points = dig_feature_bin(b);
+        for (size_t k = points.from; k < points.to; k++) {
             const double progress = state[DIG_REGRESSOR_PATH][k];
             const double time_s   = dig_trajectory_time_s(t, tooth_m, progress);
             const double depth    = state[DIG_STATE_DEPTH_m][k] / tooth_m;
@@ -198,7 +196,7 @@ static void tell_along(const struct dig_curve_set *const set, const struct dig_m
                 [DIG_BASIS_PITCH] = dig->pitch_known ? dig->pitch_rad : 0.0,
             };
             for (size_t f = 0; f < DIG_BASES; f++) {
-                value[f][b] += here[f] / (double)(to - from);
+                value[f][b] += here[f] / (double)(points.to - points.from);
             }
         }
     }

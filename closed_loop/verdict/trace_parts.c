@@ -53,11 +53,9 @@ struct dig_model_effect dig_trace_rock(const struct dig_rock *const rock, const 
 static bool is_lifting(const struct dig_curve_set *const set, const size_t trajectory,
                        const size_t bin)
 {
-    size_t from;
-    size_t to;
-    dig_feature_bin(bin, &from, &to);
-    return dig_regressors_is_lifted(set, trajectory,
-                                    0.5 * (double)(from + to - 1) / (DIG_CURVE_POINTS - 1));
+    const struct dig_bin points = dig_feature_bin(bin);
+    return dig_regressors_is_lifted(
+        set, trajectory, 0.5 * (double)(points.from + points.to - 1) / (DIG_CURVE_POINTS - 1));
 }
 
 // Sums squares over the scatter's by part: what[] is in units of the table.

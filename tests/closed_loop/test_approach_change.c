@@ -104,14 +104,12 @@ TEST_WITH(the_change_is_one_sigma_of_the_depths, set_up, NULL)
         double                        plain[DIG_FEATURES];
         double                        amplitude[DIG_FORCE_CHANNELS];
         double                        own[DIG_FEATURES];
-        size_t                        from;
-        size_t                        to;
         dig_features_of_table(curve->mean, plain);
         dig_features_amplitude(plain, NULL, amplitude);
         assert_int_equal(dig_depth_change(set, t, &set->gravel[3], own), DIG_OK);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
-            if (from >= CORNER) {
+            const struct dig_bin points = dig_feature_bin(f % DIG_FEATURE_BINS);
+            if (points.from >= CORNER) {
                 const double whole = (1.44 - 0.64) * plain[f] / amplitude[f / DIG_FEATURE_BINS];
                 assert_close(own[f], whole / sqrt(12.0), 0.005);
             }

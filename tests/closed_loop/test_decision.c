@@ -78,10 +78,8 @@ static double fraction_worse(const double size, const double last)
         double before = 0.0;
         double after  = 0.0;
         for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-            size_t from;
-            size_t to;
-            dig_feature_bin(b, &from, &to);
-            for (size_t k = from; k < to; k++) {
+            const struct dig_bin points = dig_feature_bin(b);
+            for (size_t k = points.from; k < points.to; k++) {
                 const double at     = (double)k / (DIG_CURVE_POINTS - 1);
                 const double off_Nm = sigma_at(at) * (z[b] + z[b + 1]) / sqrt(2.0);
                 before += time_s[k] * pow(off_Nm + change_at(size, at), 2.0);

@@ -16,13 +16,12 @@ TEST(a_bin_is_the_mean_of_its_points)
     dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
     size_t before = 0;
     for (size_t b = 0; b < DIG_FEATURE_BINS; b++) {
-        size_t from, to;
-        dig_feature_bin(b, &from, &to);
-        assert_int_equal(from, before); // no point twice, none left out
-        before = to;
+        const struct dig_bin points = dig_feature_bin(b);
+        assert_int_equal(points.from, before); // no point twice, none left out
+        before = points.to;
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             assert_close(feature[c * DIG_FEATURE_BINS + b],
-                         ((double)c + 1.0) * 0.5 * (double)(from + to - 1), 1e-9);
+                         ((double)c + 1.0) * 0.5 * (double)(points.from + points.to - 1), 1e-9);
         }
     }
     assert_int_equal(before, DIG_CURVE_POINTS);

@@ -40,15 +40,14 @@ TEST(a_template_gives_back_what_was_put_in)
     for (size_t e = 0; e < sizeof effect / sizeof effect[0]; e++) {
         const struct dug dug = dig_with(&gravel, MADE_ACTUAL, effect[e], 0.5, 1.0, 1.0);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
-            size_t from, to;
-            dig_feature_bin(f % DIG_FEATURE_BINS, &from, &to);
-            double truth = 0.0;
-            for (size_t k = from; k < to; k++) {
+            const struct dig_bin points = dig_feature_bin(f % DIG_FEATURE_BINS);
+            double               truth  = 0.0;
+            for (size_t k = points.from; k < points.to; k++) {
                 truth +=
                     0.5 *
                     made_effect(effect[e], MADE_ACTUAL, (enum dig_channel)(f / DIG_FEATURE_BINS),
                                 (double)k / (DIG_CURVE_POINTS - 1)) /
-                    (double)(to - from);
+                    (double)(points.to - points.from);
             }
             // The made size is a channel's own rms, the features' that of the resultant force.
             const double own[DIG_FORCE_CHANNELS] = { 1.0, 8.0 / hypot(8.0, 5.0),
