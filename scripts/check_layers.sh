@@ -55,7 +55,8 @@ closed_loop/recordings measured observe | features reading_noise regressors path
 closed_loop/machine_digs observe_machine saturation | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs
-closed_loop/machine    machine_side | machine_air machine_fit machine_lines machine_noise
+closed_loop/air        | machine_air
+closed_loop/machine    machine_side | machine_fit machine_lines machine_noise
 closed_loop/check      machine_check
 closed_loop/search     | cross_validation portmanteau search search_work unlisted
 closed_loop/accuracy   coverage score | decision effect_size judge trend

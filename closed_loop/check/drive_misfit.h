@@ -8,8 +8,8 @@
 #ifndef DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
 #define DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
 
+#include "closed_loop/air/machine_air.h"
 #include "closed_loop/check/machine_reading.h"
-#include "closed_loop/machine/machine_air.h"
 #include "core/machine.h"
 
 #include <stddef.h>

@@ -9,7 +9,7 @@
 #ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_CAUSES_H
 #define DIG_CLOSED_LOOP_CHECK_MACHINE_CAUSES_H
 
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "core/machine.h"
 #include "core/status.h"

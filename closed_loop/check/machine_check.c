@@ -1,8 +1,8 @@
 #include "closed_loop/check/machine_check.h"
 
+#include "closed_loop/air/machine_air.h"
 #include "closed_loop/check/machine_causes.h"
 #include "closed_loop/check/machine_check_private.h"
-#include "closed_loop/machine/machine_air.h"
 #include "closed_loop/recordings/reading_noise.h"
 
 #include <assert.h>
@@ -53,19 +53,19 @@ static void check_reading(const struct dig_reading_finding *const f,
         [DIG_READING_SWAPPED] = DIG_CHECK_SIDES,
         [DIG_READING_FACTOR]  = DIG_CHECK_UNIT,
     };
-    dig_check_add(check, DIG_CHECK_DEGREES, -1)->verdict =
-        f->best.degrees ? DIG_CHECK_WRONG : DIG_CHECK_OK;
+    (void)dig_check_add(check, DIG_CHECK_DEGREES, -1, (double)NAN, (double)NAN,
+                        f->best.degrees ? DIG_CHECK_WRONG : DIG_CHECK_OK);
     for (size_t q = 0; q < DIG_READING_QUESTIONS; q++) {
         for (size_t j = 0; j < DIG_JOINTS; j++) {
-            struct dig_check_item *const item = dig_check_add(check, question[q], (int)j);
-            const bool                   told = f->sigmas[q][j] >= told_sigmas;
-
-            item->answer  = (int)f->best.drive[j];
-            item->value   = q == DIG_READING_FACTOR ? f->best.factor[j] : f->sigmas[q][j];
-            item->excess  = f->sigmas[q][j];
-            item->verdict = f->plain[q][j] ? (told ? DIG_CHECK_OK : DIG_CHECK_UNTOLD)
-                            : told         ? DIG_CHECK_WRONG
-                                           : DIG_CHECK_DOUBTFUL;
+            const bool   told  = f->sigmas[q][j] >= told_sigmas;
+            const double value = q == DIG_READING_FACTOR ? f->best.factor[j] : f->sigmas[q][j];
+            struct dig_check_item *const item =
+                dig_check_add(check, question[q], (int)j, value, (double)NAN,
+                              f->plain[q][j] ? (told ? DIG_CHECK_OK : DIG_CHECK_UNTOLD)
+                              : told         ? DIG_CHECK_WRONG
+                                             : DIG_CHECK_DOUBTFUL);
+            item->answer = (int)f->best.drive[j];
+            item->excess = f->sigmas[q][j];
         }
     }
 }
@@ -96,18 +96,21 @@ static struct dig_check_item *check_cause(const struct dig_cause *const cause, c
                                           struct dig_machine_air_check *const check,
                                           const enum dig_check_question question, const int joint)
 {
-    struct dig_check_item *const item = dig_check_add(check, question, joint);
-    item->value                       = cause->value + coarse;
-    item->sigma                       = cause->sigma;
-    item->tolerance                   = cause->tolerance;
-    item->excess                      = fabs(item->value) / hypot(cause->sigma, cause->tolerance);
     // A zero that the reading took off in whole steps is wrong whatever the fit adds to it.
-    const bool named = cause->named || fabs(coarse) > 0.0;
-    item->verdict    = !asked                                    ? DIG_CHECK_UNTOLD
-                       : named                                   ? DIG_CHECK_WRONG
-                       : cause->sigma > vague * cause->tolerance ? DIG_CHECK_UNTOLD
-                       : item->excess > told_sigmas              ? DIG_CHECK_DOUBTFUL
-                                                                 : DIG_CHECK_OK;
+    const bool   named  = cause->named || fabs(coarse) > 0.0;
+    const double value  = cause->value + coarse;
+    const double excess = fabs(value) / hypot(cause->sigma, cause->tolerance);
+
+    const enum dig_check_verdict verdict =
+        !asked  ? DIG_CHECK_UNTOLD
+        : named ? DIG_CHECK_WRONG
+        : cause->sigma > vague * cause->tolerance
+            ? DIG_CHECK_UNTOLD
+            : dig_check_grade(excess, told_sigmas, (double)INFINITY);
+    struct dig_check_item *const item =
+        dig_check_add(check, question, joint, value, cause->tolerance, verdict);
+    item->sigma  = cause->sigma;
+    item->excess = excess;
     return item;
 }
 
@@ -187,17 +190,16 @@ static void check_rest(const struct dig_causes *const      causes,
                        struct dig_machine_air_check *const check)
 {
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_REST, (int)j);
-        item->value                       = causes->rest[j];
-        item->tolerance                   = little_rest;
-        item->share                       = causes->rest_N[j] / load_N(&check->curves, j);
-
-        const bool much    = item->value > much_rest && item->share > much_share;
-        const bool little  = item->value > little_rest && item->share > little_share;
-        item->verdict      = isnan(item->value) ? DIG_CHECK_UNTOLD
-                             : much             ? DIG_CHECK_WRONG
-                             : little           ? DIG_CHECK_DOUBTFUL
-                                                : DIG_CHECK_OK;
+        const double rest   = causes->rest[j];
+        const double share  = causes->rest_N[j] / load_N(&check->curves, j);
+        const bool   much   = rest > much_rest && share > much_share;
+        const bool   little = rest > little_rest && share > little_share;
+        dig_check_add(check, DIG_CHECK_REST, (int)j, rest, little_rest,
+                      isnan(rest) ? DIG_CHECK_UNTOLD
+                      : much      ? DIG_CHECK_WRONG
+                      : little    ? DIG_CHECK_DOUBTFUL
+                                  : DIG_CHECK_OK)
+            ->share        = share;
         check->unexplained = check->unexplained || much;
     }
     for (size_t i = 0; i < check->items && check->unexplained; i++) {
@@ -216,9 +218,8 @@ static enum dig_status take_air(const struct dig_machine *const           machin
                                 struct dig_machine_dig *const dig, struct dig_air *const air,
                                 struct dig_error *const error)
 {
-    static const bool used[1] = { true };
-    enum dig_status   status  = dig_machine_dig_make_air(machine, recording, dig, error);
-    return status == DIG_OK ? dig_air_make(machine, 1, dig, used, air) : status;
+    enum dig_status status = dig_machine_dig_make_air(machine, recording, dig, error);
+    return status == DIG_OK ? dig_air_make(machine, 1, dig, NULL, air) : status;
 }
 
 // How far the joints turn, sign and zero aside.
@@ -314,8 +315,7 @@ enum dig_status dig_machine_air_check_run(const struct dig_machine *const       
     if (status == DIG_OK) {
         made.duration_s =
             1e-9 * (double)(recording->row[read.rows - 1].time_ns - recording->row[0].time_ns);
-        dig_check_recording(&read, &made);
-        dig_check_stuck(machine, &read, &made);
+        dig_check_recording(machine, &read, &made);
         status = read_plain(machine, &read, moves, &made, error);
     }
     if (status == DIG_OK) {

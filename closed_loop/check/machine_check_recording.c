@@ -25,16 +25,19 @@ static const double little_rad = 0.5 * DIG_RAD_PER_DEG; // beyond a limit
 static const double much_rad   = 2.0 * DIG_RAD_PER_DEG;
 
 struct dig_check_item *dig_check_add(struct dig_machine_air_check *const check,
-                                     const enum dig_check_question question, const int of)
+                                     const enum dig_check_question question, const int of,
+                                     const double value, const double tolerance,
+                                     const enum dig_check_verdict verdict)
 {
     assert(check->items < DIG_CHECK_ITEMS_MAX);
     struct dig_check_item *const item = &check->item[check->items++];
     *item                             = (struct dig_check_item){
                                     .question  = question,
                                     .of        = of,
-                                    .value     = (double)NAN,
+                                    .verdict   = verdict,
+                                    .value     = value,
                                     .sigma     = (double)NAN,
-                                    .tolerance = (double)NAN,
+                                    .tolerance = tolerance,
                                     .excess    = (double)NAN,
                                     .share     = (double)NAN,
                                     .at_rod    = (double)NAN,
@@ -42,6 +45,12 @@ struct dig_check_item *dig_check_add(struct dig_machine_air_check *const check,
                                     .or_item   = -1,
     };
     return item;
+}
+
+enum dig_check_verdict dig_check_grade(const double value, const double doubtful,
+                                       const double wrong)
+{
+    return value > wrong ? DIG_CHECK_WRONG : value > doubtful ? DIG_CHECK_DOUBTFUL : DIG_CHECK_OK;
 }
 
 static void check_times(const struct dig_machine_recording *const recording,
@@ -53,13 +62,10 @@ static void check_times(const struct dig_machine_recording *const recording,
             fmax(gap_s, 1e-9 * (double)(recording->row[i].time_ns - recording->row[i - 1].time_ns));
     }
     const double rate_Hz = (double)(recording->rows - 1) / check->duration_s;
-
-    struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_TIMES, -1);
-    item->value                       = rate_Hz;
-    item->tolerance                   = gap_s;
-    item->verdict                     = !(rate_Hz >= least_Hz) ? DIG_CHECK_WRONG
-                                        : gap_s > most_gap_s   ? DIG_CHECK_DOUBTFUL
-                                                               : DIG_CHECK_OK;
+    const bool   slow    = !(rate_Hz >= least_Hz);
+    (void)dig_check_add(check, DIG_CHECK_TIMES, -1, rate_Hz, gap_s,
+                        slow ? DIG_CHECK_WRONG
+                             : dig_check_grade(gap_s, most_gap_s, (double)INFINITY));
 }
 
 // Of each signal that is there at all.
@@ -75,12 +81,8 @@ static void check_missing(const struct dig_machine_recording *const recording,
         const double missing = 1.0 - here / (double)recording->rows;
         most                 = missing < 1.0 ? fmax(most, missing) : most;
     }
-    struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_MISSING, -1);
-    item->value                       = most;
-    item->tolerance                   = few_missing;
-    item->verdict                     = most > many_missing  ? DIG_CHECK_WRONG
-                                        : most > few_missing ? DIG_CHECK_DOUBTFUL
-                                                             : DIG_CHECK_OK;
+    (void)dig_check_add(check, DIG_CHECK_MISSING, -1, most, few_missing,
+                        dig_check_grade(most, few_missing, many_missing));
 }
 
 // The longest stretch in which a signal keeps one value; false: it never changes at all.
@@ -124,11 +126,10 @@ void dig_check_range(const size_t samples, const struct dig_sample sample[], con
     }
 }
 
-void dig_check_stuck(const struct dig_machine *const     machine,
-                     struct dig_machine_recording *const recording,
-                     struct dig_machine_air_check *const check)
+static void check_stuck(const struct dig_machine *const     machine,
+                        struct dig_machine_recording *const recording,
+                        struct dig_machine_air_check *const check)
 {
-    assert(machine != NULL && recording != NULL && check != NULL);
     for (size_t s = 0; s <= DIG_SIGNAL_BUCKET_ROD_Pa; s++) {
         const bool   angle = s <= DIG_SIGNAL_BUCKET_rad;
         const size_t joint = angle ? s : (s - DIG_SIGNAL_BOOM_HEAD_Pa) / DIG_CHAMBERS;
@@ -144,10 +145,7 @@ void dig_check_stuck(const struct dig_machine *const     machine,
         if (!(most.s > stuck_s) || !(noisy || (!changes && turns))) {
             continue;
         }
-        struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_STUCK, (int)s);
-        item->value                       = most.s;
-        item->tolerance                   = stuck_s;
-        item->verdict                     = DIG_CHECK_WRONG;
+        (void)dig_check_add(check, DIG_CHECK_STUCK, (int)s, most.s, stuck_s, DIG_CHECK_WRONG);
         for (size_t i = most.first; i <= most.last; i++) {
             recording->row[i].valid[s] = false;
             recording->row[i].value[s] = 0.0;
@@ -177,10 +175,9 @@ static void check_moves(const struct dig_machine_dig *const dig, const size_t j,
 {
     double *const range_rad = check->angles_rad[j];
     dig_check_range(dig->samples, dig->sample, DIG_SIGNAL_BOOM_rad + j, range_rad);
-    struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_MOVES, (int)j);
-    item->value                       = range_rad[1] - range_rad[0];
-    item->tolerance                   = DIG_CHECK_LEAST_TURN_rad;
-    item->verdict = item->value >= DIG_CHECK_LEAST_TURN_rad ? DIG_CHECK_OK : DIG_CHECK_UNTOLD;
+    const double turn_rad = range_rad[1] - range_rad[0];
+    (void)dig_check_add(check, DIG_CHECK_MOVES, (int)j, turn_rad, DIG_CHECK_LEAST_TURN_rad,
+                        turn_rad >= DIG_CHECK_LEAST_TURN_rad ? DIG_CHECK_OK : DIG_CHECK_UNTOLD);
 }
 
 static void check_limits(const struct dig_machine *const machine, const size_t j,
@@ -188,21 +185,18 @@ static void check_limits(const struct dig_machine *const machine, const size_t j
 {
     const double most_rad = fmax(beyond_rad(machine, j, check->angles_rad[j][0]),
                                  beyond_rad(machine, j, check->angles_rad[j][1]));
-
-    struct dig_check_item *const item = dig_check_add(check, DIG_CHECK_RANGE, (int)j);
-    item->value                       = fmax(most_rad, 0.0);
-    item->tolerance                   = little_rad;
-    item->verdict                     = most_rad > much_rad     ? DIG_CHECK_WRONG
-                                        : most_rad > little_rad ? DIG_CHECK_DOUBTFUL
-                                                                : DIG_CHECK_OK;
+    (void)dig_check_add(check, DIG_CHECK_RANGE, (int)j, fmax(most_rad, 0.0), little_rad,
+                        dig_check_grade(most_rad, little_rad, much_rad));
 }
 
-void dig_check_recording(const struct dig_machine_recording *const recording,
-                         struct dig_machine_air_check *const       check)
+void dig_check_recording(const struct dig_machine *const     machine,
+                         struct dig_machine_recording *const recording,
+                         struct dig_machine_air_check *const check)
 {
-    assert(recording != NULL && check != NULL);
+    assert(machine != NULL && recording != NULL && check != NULL);
     check_times(recording, check);
     check_missing(recording, check);
+    check_stuck(machine, recording, check);
 }
 
 void dig_check_motion(const struct dig_machine *const     machine,

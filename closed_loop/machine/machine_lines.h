@@ -10,7 +10,7 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
 
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 #include "closed_loop/recordings/measured.h"
 #include "core/effect.h"
 #include "core/model.h"

@@ -4,7 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SIDE_H
 
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 #include "closed_loop/model/candidate.h"
 #include "closed_loop/recordings/measured.h"
 #include "core/machine.h"

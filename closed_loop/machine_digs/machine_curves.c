@@ -25,26 +25,26 @@ struct reading {
     bool                  solved;
 };
 
+// Every so many of the samples [from, to), read.
+struct readings {
+    size_t                 from, to, every;
+    struct reading        *at;   // [to - from]
+    struct dig_path_point *room; // as many points
+};
+
 // The sample with the angles and rates of delay_s before, straight between the samples there.
 static void put_back(const struct dig_machine_dig *const dig, const size_t at, const double delay_s,
                      struct dig_sample *const sample, struct dig_rates *const rates)
 {
-    const double time_s = dig->time_s[at] - delay_s;
-    size_t       i      = at;
-    while (i > 0 && dig->time_s[i] > time_s) {
-        i--;
-    }
-    while (i + 2 < dig->samples && dig->time_s[i + 1] <= time_s) {
-        i++;
-    }
-    const double f =
-        fmin(fmax((time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]), 0.0), 1.0);
+    const struct dig_between then = dig_machine_dig_between(dig, dig->time_s[at] - delay_s, at);
+    const double             f    = then.fraction;
+    const double *const      a    = dig->sample[then.sample].value;
+    const double *const      b    = dig->sample[then.sample + 1].value;
 
     *sample = dig->sample[at];
-    *rates  = dig_rates_between(&dig->rates[i], &dig->rates[i + 1], f);
-    for (size_t j = 0; j < DIG_JOINTS; j++) {
-        const size_t q   = (size_t)DIG_SIGNAL_BOOM_rad + j;
-        sample->value[q] = (1.0 - f) * dig->sample[i].value[q] + f * dig->sample[i + 1].value[q];
+    *rates  = dig_machine_dig_rates(dig, then);
+    for (size_t q = DIG_SIGNAL_BOOM_rad; q <= DIG_SIGNAL_BUCKET_rad; q++) {
+        sample->value[q] = (1.0 - f) * a[q] + f * b[q];
     }
 }
 
@@ -56,12 +56,11 @@ static bool tells(const struct reading *const r, const bool forces)
 static void solve_all(const struct dig_machine *const     machine,
                       const struct dig_machine_dig *const dig,
                       const struct dig_correction *const correction, const bool with_sigma,
-                      const struct dig_curve_set *const set, const size_t from, const size_t to,
-                      const size_t every, struct reading reading[])
+                      const struct dig_curve_set *const set, const struct readings *const all)
 {
     struct dig_machine corrected = dig_correction_machine(machine, correction);
     corrected.tolerance          = (struct dig_tolerance){ 0.0, 0.0, 0.0 }; // not asked for here
-    for (size_t i = from; i < to; i += every) {
+    for (size_t i = all->from; i < all->to; i += all->every) {
         struct reading    r = { .solved = false };
         struct dig_front  front;
         struct dig_sample sample = dig->sample[i];
@@ -74,29 +73,28 @@ static void solve_all(const struct dig_machine *const     machine,
         if (r.solved) {
             r.pose = dig_machine_dig_point(set, dig, &front);
         }
-        reading[i - from] = r;
+        all->at[i - all->from] = r;
     }
 }
 
 // Where the dig lies by the corrected angles: elsewhere than by those it was found by, where these
-// read too much. room: as many points as readings.
+// read too much.
 static struct dig_track track_of(const struct dig_curve_set *const   set,
                                  const struct dig_machine_dig *const dig,
-                                 const struct dig_correction *const correction, const size_t from,
-                                 const size_t to, const size_t every,
-                                 const struct reading reading[], struct dig_path_point room[])
+                                 const struct dig_correction *const  correction,
+                                 const struct readings *const        all)
 {
     size_t points = 0;
     double turned = 0.0;
     for (int j = 0; j < DIG_JOINTS; j++) {
         turned += fabs(correction->angle_rad[j]);
     }
-    for (size_t i = from; i < to && turned > 0.0; i += every) {
-        if (i >= dig->contact && i < dig->end && reading[i - from].solved) {
-            room[points++] = reading[i - from].pose;
+    for (size_t i = all->from; i < all->to && turned > 0.0; i += all->every) {
+        if (i >= dig->contact && i < dig->end && all->at[i - all->from].solved) {
+            all->room[points++] = all->at[i - all->from].pose;
         }
     }
-    return points > 0 ? dig_machine_dig_fit(set, dig, 0, points, room) : dig->track;
+    return points > 0 ? dig_machine_dig_fit(set, dig, 0, points, all->room) : dig->track;
 }
 
 // A reading in rig scale, all channels.
@@ -125,16 +123,16 @@ static struct dig_window_sample sample_of(const struct dig_machine_dig *const di
 
 // The samples that tell the moment, or the forces besides, through the estimator's window.
 static bool observe(const struct dig_curve_set *const set, const struct dig_machine_dig *const dig,
-                    const struct dig_track *const track, const size_t from, const size_t to,
-                    const size_t every, const struct reading reading[], const bool forces,
-                    struct dig_window *const window, struct dig_observation *const observation)
+                    const struct dig_track *const track, const struct readings *const all,
+                    const bool forces, struct dig_window *const window,
+                    struct dig_observation *const observation)
 {
     size_t told = 0;
     size_t of   = 0;
     dig_window_close(window);
     dig_window_open(window);
-    for (size_t i = from; i < to; i += every) {
-        const struct reading *const r      = &reading[i - from];
+    for (size_t i = all->from; i < all->to; i += all->every) {
+        const struct reading *const r      = &all->at[i - all->from];
         const bool                  inside = i >= dig->contact && i < dig->end;
         of += inside ? 1 : 0;
         told += inside && tells(r, forces) ? 1 : 0;
@@ -209,26 +207,25 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
                                         struct dig_measured *const          measured)
 {
     assert(machine != NULL && set != NULL && dig != NULL && correction != NULL && measured != NULL);
-    const size_t             from    = beside(dig, dig->contact, -beside_s);
-    const size_t             to      = beside(dig, dig->end, beside_s);
-    struct dig_window *const window  = calloc(1, sizeof *window);
-    const size_t             rows    = to > from ? to - from : 0;
-    const size_t             every   = how == DIG_MEASURE_ROUGHLY ? rows / DIG_CURVE_POINTS + 1 : 1;
-    struct reading *const    reading = malloc((rows + 1) * sizeof *reading);
-    struct dig_path_point *const room = malloc((rows + 1) * sizeof *room);
-    if (window == NULL || reading == NULL || room == NULL) {
+    struct readings          all    = { .from = beside(dig, dig->contact, -beside_s),
+                                        .to   = beside(dig, dig->end, beside_s) };
+    struct dig_window *const window = calloc(1, sizeof *window);
+    const size_t             rows   = all.to > all.from ? all.to - all.from : 0;
+    all.every                       = how == DIG_MEASURE_ROUGHLY ? rows / DIG_CURVE_POINTS + 1 : 1;
+    all.at                          = malloc((rows + 1) * sizeof *all.at);
+    all.room                        = malloc((rows + 1) * sizeof *all.room);
+    if (window == NULL || all.at == NULL || all.room == NULL) {
         free(window);
-        free(reading);
-        free(room);
+        free(all.at);
+        free(all.room);
         return DIG_ENOMEM;
     }
-    solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, from, to, every,
-              reading);
+    solve_all(machine, dig, correction, how == DIG_MEASURE_WITH_SIGMA, set, &all);
 
-    const struct dig_track track = track_of(set, dig, correction, from, to, every, reading, room);
+    const struct dig_track track = track_of(set, dig, correction, &all);
     struct dig_observation o     = { .first = 0.0 };
-    const bool is = observe(set, dig, &track, from, to, every, reading, true, window, &o) ||
-                    observe(set, dig, &track, from, to, every, reading, false, window, &o);
+    const bool             is    = observe(set, dig, &track, &all, true, window, &o) ||
+                    observe(set, dig, &track, &all, false, window, &o);
     write_channel(is, o.moment_Nm, o.sigma_Nm, DIG_CHANNEL_MY_Nm, measured);
     for (size_t c = 1; c < DIG_FORCE_CHANNELS; c++) {
         write_channel(is && o.forces, o.force_N[c - 1], o.force_sigma_N[c - 1], c, measured);
@@ -242,7 +239,7 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
         tell_path_depth(set, dig, &track, window, measured->deeper);
     }
     free(window);
-    free(reading);
-    free(room);
+    free(all.at);
+    free(all.room);
     return is ? DIG_OK : DIG_ENOMATCH;
 }

@@ -1,7 +1,6 @@
 #include "closed_loop/machine_digs/machine_dig.h"
 
 #include "closed_loop/machine_digs/free_air.h"
-#include "closed_loop/machine_digs/machine_samples.h"
 #include "closed_loop/machine_digs/pose_jump.h"
 #include "core/sample.h"
 #include "estimator/approach/approach_route.h"
@@ -240,19 +239,19 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
                                      struct dig_error *const error)
 {
     assert(machine != NULL && set != NULL && recording != NULL && dig != NULL);
-    const size_t        rows = recording->rows + 1;
-    struct dig_vertices v    = {
-           .point  = malloc(rows * sizeof *v.point),
-           .sample = malloc(rows * sizeof *v.sample),
-    };
-    struct dig_machine_dig made = { .samples = 0 };
-    if (v.point == NULL || v.sample == NULL) {
-        free(v.point);
-        free(v.sample);
-        return dig_error_set(error, DIG_ENOMEM, "%zu samples", rows);
+    struct dig_machine_dig made;
+    enum dig_status        status = dig_machine_dig_make_air(machine, recording, &made, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    enum dig_status status = dig_machine_samples_take(machine, recording, &made, error);
-    made.lambda            = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    struct dig_vertices v = {
+        .point  = malloc(made.samples * sizeof *v.point),
+        .sample = malloc(made.samples * sizeof *v.sample),
+    };
+    made.lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    if (v.point == NULL || v.sample == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%zu samples", made.samples);
+    }
     if (status == DIG_OK) {
         status = check_jump(&made, error);
     }
@@ -267,32 +266,4 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
     }
     *dig = made;
     return DIG_OK;
-}
-
-enum dig_status dig_machine_dig_make_air(const struct dig_machine *const           machine,
-                                         const struct dig_machine_recording *const recording,
-                                         struct dig_machine_dig *const             dig,
-                                         struct dig_error *const                   error)
-{
-    assert(machine != NULL && recording != NULL && dig != NULL);
-    struct dig_machine_dig made;
-    const enum dig_status  status = dig_machine_samples_take(machine, recording, &made, error);
-    if (status != DIG_OK) {
-        dig_machine_dig_finish(&made);
-        return status;
-    }
-    made.trajectory = -1;
-    made.before_end = made.contact = made.end = made.after = made.after_end = made.samples;
-    *dig                                                                    = made;
-    return DIG_OK;
-}
-
-void dig_machine_dig_finish(struct dig_machine_dig *const dig)
-{
-    if (dig != NULL) {
-        free(dig->sample);
-        free(dig->time_s);
-        free(dig->rates);
-        *dig = (struct dig_machine_dig){ .samples = 0 };
-    }
 }

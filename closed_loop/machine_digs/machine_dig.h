@@ -61,6 +61,19 @@ void dig_machine_dig_finish(struct dig_machine_dig *dig);
 /// The first sample at this time or after; samples: there is none.
 size_t dig_machine_dig_sample_at(const struct dig_machine_dig *dig, double time_s);
 
+/// A time between a sample and the next: how far towards that, 0 … 1, the nearer end where it lies
+/// outside.
+struct dig_between {
+    size_t sample;
+    double fraction;
+};
+
+/// Where a time lies among two samples or more, looked for from one near it; the rates there,
+/// straight between.
+struct dig_between dig_machine_dig_between(const struct dig_machine_dig *dig, double time_s,
+                                           size_t near);
+struct dig_rates   dig_machine_dig_rates(const struct dig_machine_dig *dig, struct dig_between at);
+
 /// The bucket of the machine standing so, in rig scale.
 struct dig_path_point dig_machine_dig_point(const struct dig_curve_set   *set,
                                             const struct dig_machine_dig *dig,

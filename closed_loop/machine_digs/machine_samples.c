@@ -1,11 +1,15 @@
-#include "closed_loop/machine_digs/machine_samples.h"
+// Which samples of a machine's recording can be used: those in time with all angles, the pressures
+// of the bucket's drive, and of every other drive that most of them tell.
 
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "core/sample.h"
 #include "estimator/wrench/cylinder.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+
+enum { LEAST_SAMPLES = 50 };
 
 // Rates from angles within this of a sample.
 static const double rates_half_s = 0.12;
@@ -77,40 +81,61 @@ static size_t copy_complete(const struct dig_machine_recording *const recording,
     return n;
 }
 
-enum dig_status dig_machine_samples_take(const struct dig_machine *const           machine,
+void dig_machine_dig_finish(struct dig_machine_dig *const dig)
+{
+    if (dig != NULL) {
+        free(dig->sample);
+        free(dig->time_s);
+        free(dig->rates);
+        *dig = (struct dig_machine_dig){ .samples = 0 };
+    }
+}
+
+enum dig_status dig_machine_dig_make_air(const struct dig_machine *const           machine,
                                          const struct dig_machine_recording *const recording,
                                          struct dig_machine_dig *const             dig,
                                          struct dig_error *const                   error)
 {
     assert(machine != NULL && recording != NULL && dig != NULL);
-    const size_t  rows      = recording->rows + 1;
-    double *const joint_rad = malloc(DIG_JOINTS * rows * sizeof *joint_rad);
-    *dig                    = (struct dig_machine_dig){
-                           .sample = malloc(rows * sizeof *dig->sample),
-                           .time_s = malloc(rows * sizeof *dig->time_s),
-                           .rates  = malloc(rows * sizeof *dig->rates),
+    const size_t           rows      = recording->rows + 1;
+    double *const          joint_rad = malloc(DIG_JOINTS * rows * sizeof *joint_rad);
+    struct dig_machine_dig made      = {
+             .sample     = malloc(rows * sizeof *made.sample),
+             .time_s     = malloc(rows * sizeof *made.time_s),
+             .rates      = malloc(rows * sizeof *made.rates),
+             .trajectory = -1,
     };
-    if (joint_rad == NULL || dig->sample == NULL || dig->time_s == NULL || dig->rates == NULL) {
-        free(joint_rad);
-        return dig_error_set(error, DIG_ENOMEM, "%zu samples", recording->rows);
+    enum dig_status status = DIG_OK;
+    if (joint_rad == NULL || made.sample == NULL || made.time_s == NULL || made.rates == NULL) {
+        status = dig_error_set(error, DIG_ENOMEM, "%zu samples", recording->rows);
+        goto done;
     }
-    dig->samples = copy_complete(recording, dig->sample);
-    for (size_t i = 0; i < dig->samples; i++) {
-        dig->time_s[i] = 1e-9 * (double)(dig->sample[i].time_ns - dig->sample[0].time_ns);
+    made.samples = copy_complete(recording, made.sample);
+    if (made.samples < LEAST_SAMPLES) {
+        status = dig_error_set(error, DIG_EINVAL,
+                               "%zu samples with all angles and the bucket cylinder's pressures, "
+                               "expected %d at least",
+                               made.samples, LEAST_SAMPLES);
+        goto done;
+    }
+    for (size_t i = 0; i < made.samples; i++) {
+        made.time_s[i] = 1e-9 * (double)(made.sample[i].time_ns - made.sample[0].time_ns);
         for (size_t j = 0; j < DIG_JOINTS; j++) {
-            joint_rad[DIG_JOINTS * i + j] = dig->sample[i].value[(size_t)DIG_SIGNAL_BOOM_rad + j];
+            joint_rad[DIG_JOINTS * i + j] = made.sample[i].value[(size_t)DIG_SIGNAL_BOOM_rad + j];
         }
     }
-    dig_rates_centred(dig->samples, dig->time_s, joint_rad, rates_half_s,
+    dig_rates_centred(made.samples, made.time_s, joint_rad, rates_half_s,
                       dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad),
-                      dig->rates);
+                      made.rates);
+    made.before_end = made.contact = made.end = made.after = made.after_end = made.samples;
+done:
     free(joint_rad);
-    return dig->samples >= 50
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL,
-                               "%zu samples with all angles and the bucket cylinder's pressures, "
-                               "expected 50 at least",
-                               dig->samples);
+    if (status == DIG_OK) {
+        *dig = made;
+    } else {
+        dig_machine_dig_finish(&made);
+    }
+    return status;
 }
 
 size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const double time_s)
@@ -120,4 +145,25 @@ size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const 
         i++;
     }
     return i;
+}
+
+struct dig_between dig_machine_dig_between(const struct dig_machine_dig *const dig,
+                                           const double time_s, const size_t near)
+{
+    assert(dig != NULL && dig->samples >= 2);
+    size_t i = near < dig->samples - 2 ? near : dig->samples - 2;
+    while (i > 0 && dig->time_s[i] > time_s) {
+        i--;
+    }
+    while (i + 2 < dig->samples && dig->time_s[i + 1] <= time_s) {
+        i++;
+    }
+    const double f = (time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]);
+    return (struct dig_between){ i, fmin(fmax(f, 0.0), 1.0) };
+}
+
+struct dig_rates dig_machine_dig_rates(const struct dig_machine_dig *const dig,
+                                       const struct dig_between            at)
+{
+    return dig_rates_between(&dig->rates[at.sample], &dig->rates[at.sample + 1], at.fraction);
 }

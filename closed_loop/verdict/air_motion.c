@@ -1,6 +1,6 @@
 #include "closed_loop/verdict/air_motion.h"
 
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "core/units.h"
 #include "estimator/wrench/balance.h"
@@ -12,24 +12,27 @@
 
 enum { SAMPLES = 2000, FAST = 5 };
 
-static const double swing        = 0.3; // of the joint's range
-static const double rates_half_s = 0.12;
+static const double swing = 0.3; // of the joint's range
 
 static const struct dig_correction none = { .delay_s = 0.0 };
 
 // The joints' angles along the motion, sample by sample.
 static void move(const struct dig_machine *const machine, const struct dig_motion *const motion,
-                 double time_s[SAMPLES], double joint_rad[SAMPLES * DIG_JOINTS])
+                 struct dig_sample sample[SAMPLES])
 {
     const double turns = motion->fast ? FAST : 1.0;
     for (size_t i = 0; i < SAMPLES; i++) {
-        time_s[i] = DIG_MOTION_s * (double)i / SAMPLES;
+        const double time_s = DIG_MOTION_s * (double)i / SAMPLES;
+        sample[i]           = (struct dig_sample){ .time_ns = llround(1e9 * time_s) };
+        for (size_t s = 0; s <= DIG_SIGNAL_PITCH_rad; s++) {
+            sample[i].valid[s] = true;
+        }
         for (size_t j = 0; j < DIG_JOINTS; j++) {
             const struct dig_link *const link = &machine->link[j];
 
             const double range_rad = link->max_rad - link->min_rad;
-            const double phase_rad = 2.0 * DIG_PI * turns * time_s[i] / DIG_MOTION_s;
-            joint_rad[DIG_JOINTS * i + j] =
+            const double phase_rad = 2.0 * DIG_PI * turns * time_s / DIG_MOTION_s;
+            sample[i].value[DIG_SIGNAL_BOOM_rad + j] =
                 0.5 * (link->min_rad + link->max_rad) +
                 (j == (size_t)motion->joint ? swing * range_rad * sin(phase_rad) : 0.0);
         }
@@ -66,45 +69,27 @@ static bool push(const struct dig_machine *const machine, const struct dig_rates
     return true;
 }
 
-// The motion as a recording of nothing but air. Arrays are the caller's to free.
+// The motion as a recording of nothing but air.
 static enum dig_status record(const struct dig_machine *const machine,
                               const struct dig_motion *const  motion,
                               struct dig_machine_dig *const   dig)
 {
-    double *const joint_rad = malloc((size_t)SAMPLES * DIG_JOINTS * sizeof *joint_rad);
-    *dig                    = (struct dig_machine_dig){ .samples = SAMPLES };
-    dig->time_s             = malloc(SAMPLES * sizeof *dig->time_s);
-    dig->rates              = malloc(SAMPLES * sizeof *dig->rates);
-    dig->sample             = calloc(SAMPLES, sizeof *dig->sample);
-    if (joint_rad == NULL || dig->time_s == NULL || dig->rates == NULL || dig->sample == NULL) {
-        free(joint_rad);
+    struct dig_error             error     = { "" };
+    struct dig_machine_recording recording = { .rows = SAMPLES,
+                                               .row  = malloc(SAMPLES * sizeof *recording.row) };
+    if (recording.row == NULL) {
         return DIG_ENOMEM;
     }
-    move(machine, motion, dig->time_s, joint_rad);
-    dig_rates_centred(SAMPLES, dig->time_s, joint_rad, rates_half_s,
-                      dig_reading_sigma(machine->angle_step_rad, machine->angle_sigma_rad),
-                      dig->rates);
-    for (size_t i = 0; i < SAMPLES; i++) {
-        struct dig_sample *const sample = &dig->sample[i];
-        for (size_t s = 0; s <= DIG_SIGNAL_PITCH_rad; s++) {
-            sample->valid[s] = true;
-        }
-        for (size_t j = 0; j < DIG_JOINTS; j++) {
-            sample->value[DIG_SIGNAL_BOOM_rad + j] = joint_rad[DIG_JOINTS * i + j];
-        }
-        sample->time_ns = llround(1e9 * dig->time_s[i]);
-        if (!push(machine, &dig->rates[i], sample)) {
+    move(machine, motion, recording.row);
+    const enum dig_status status = dig_machine_dig_make_air(machine, &recording, dig, &error);
+    dig_machine_recording_finish(&recording);
+    for (size_t i = 0; status == DIG_OK && i < dig->samples; i++) {
+        if (!push(machine, &dig->rates[i], &dig->sample[i])) {
             // A row that holds it tells nothing.
-            sample->valid[DIG_SIGNAL_BUCKET_HEAD_Pa] = false;
+            dig->sample[i].valid[DIG_SIGNAL_BUCKET_HEAD_Pa] = false;
         }
     }
-    free(joint_rad);
-    dig->before_end = SAMPLES;
-    dig->contact    = SAMPLES;
-    dig->end        = SAMPLES;
-    dig->after      = SAMPLES;
-    dig->after_end  = SAMPLES;
-    return DIG_OK;
+    return status;
 }
 
 // The motion's readings are not rounded: what rounding they would have is noise.
@@ -125,14 +110,13 @@ enum dig_status dig_motion_sigmas(const struct dig_machine *const    machine,
                                   const struct dig_correction *const b, double *const sigmas)
 {
     assert(machine != NULL && motion != NULL && a != NULL && b != NULL && sigmas != NULL);
-    const struct dig_machine even    = unrounded(machine);
-    const bool               used[1] = { true };
-    struct dig_machine_dig   dig;
+    const struct dig_machine even   = unrounded(machine);
+    struct dig_machine_dig   dig    = { .samples = 0 };
     struct dig_air           air    = { .points = 0 };
     double                  *rest   = NULL;
     enum dig_status          status = record(&even, motion, &dig);
     if (status == DIG_OK) {
-        status = dig_air_make(&even, 1, &dig, used, &air);
+        status = dig_air_make(&even, 1, &dig, NULL, &air);
     }
     if (status == DIG_OK) {
         rest   = malloc((2 * air.rows + 1) * sizeof *rest);

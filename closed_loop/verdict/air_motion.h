@@ -1,7 +1,7 @@
 // Which motion in free air tells two corrections of a machine apart: the machine of the file moves
 // one joint back and forth, its chambers at what that takes, and what is left of the balance with
 // either correction is compared, row by row as free air is traced
-// (closed_loop/machine/machine_air.h).
+// (closed_loop/air/machine_air.h).
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_AIR_MOTION_H
 #define DIG_CLOSED_LOOP_VERDICT_AIR_MOTION_H

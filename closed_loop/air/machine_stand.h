@@ -2,10 +2,10 @@
 // machine stands: all readings of a pose are rounded alike, and their mean is known no better than
 // one of them. Noise of half a step spreads the rounding evenly, and the mean of many is sure.
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_STAND_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_STAND_H
+#ifndef DIG_CLOSED_LOOP_AIR_MACHINE_STAND_H
+#define DIG_CLOSED_LOOP_AIR_MACHINE_STAND_H
 
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 
 /// Raises the sigma of the segment's rows in which a chamber stands, so that together they tell as
 /// much of its pressure as there are roundings: one, and one more for every step that its reading
@@ -13,4 +13,4 @@
 void dig_stand_widen(struct dig_air *air, const struct dig_air_segment *segment,
                      const struct dig_machine_dig *dig);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_STAND_H
+#endif // DIG_CLOSED_LOOP_AIR_MACHINE_STAND_H

@@ -1,6 +1,6 @@
 // What the machine leaves of free air's equations, and how it does with corrections.
 
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/dynamics.h"
 

@@ -5,8 +5,8 @@
 // Accelerations from angles are means over a kernel (1 - u^2)^2 of +-0.12 s; pressures and angles
 // are averaged over the same kernel first, so that inertia and drive are of one time.
 
-#ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_AIR_H
-#define DIG_CLOSED_LOOP_MACHINE_MACHINE_AIR_H
+#ifndef DIG_CLOSED_LOOP_AIR_MACHINE_AIR_H
+#define DIG_CLOSED_LOOP_AIR_MACHINE_AIR_H
 
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "core/machine.h"
@@ -83,8 +83,8 @@ struct dig_air {
     struct dig_air_pose    *pose;    // [points]
 };
 
-/// Takes the air of the digs for which used[] is true. Samples with a pressure at relief, a drive
-/// at its stop or a linkage at its toggle make no row of that joint. DIG_ENOMEM.
+/// Takes the air of the digs for which used[] is true (NULL: of all). Samples with a pressure at
+/// relief, a drive at its stop or a linkage at its toggle make no row of that joint. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_air_make(const struct dig_machine *machine, size_t digs,
                                             const struct dig_machine_dig dig[], const bool used[],
                                             struct dig_air *air);
@@ -113,4 +113,4 @@ void dig_air_rest(const struct dig_air *air, const struct dig_correction correct
 void dig_air_held(const struct dig_air *air, const struct dig_correction correction[],
                   double held[]);
 
-#endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_AIR_H
+#endif // DIG_CLOSED_LOOP_AIR_MACHINE_AIR_H

@@ -1,4 +1,4 @@
-#include "closed_loop/machine/machine_stand.h"
+#include "closed_loop/air/machine_stand.h"
 
 #include <assert.h>
 #include <math.h>

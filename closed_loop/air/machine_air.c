@@ -1,6 +1,6 @@
-#include "closed_loop/machine/machine_air.h"
+#include "closed_loop/air/machine_air.h"
 
-#include "closed_loop/machine/machine_stand.h"
+#include "closed_loop/air/machine_stand.h"
 #include "core/linkage.h"
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/dynamics.h"
@@ -145,19 +145,6 @@ static void add_rows(struct dig_air *const air, const size_t first, const size_t
     }
 }
 
-// The rates at a time, straight between the samples beside it: those of the sample before would be
-// half a sample old on average, which at 50 Hz looks like a delay of 10 ms.
-static struct dig_rates rates_at(const struct dig_machine_dig *const dig, const double time_s,
-                                 const size_t from)
-{
-    size_t i = from + 1 < dig->samples ? from : dig->samples - 2;
-    while (i + 2 < dig->samples && dig->time_s[i + 1] <= time_s) {
-        i++;
-    }
-    const double f = (time_s - dig->time_s[i]) / (dig->time_s[i + 1] - dig->time_s[i]);
-    return dig_rates_between(&dig->rates[i], &dig->rates[i + 1], fmin(fmax(f, 0.0), 1.0));
-}
-
 static void add_point(struct dig_air *const air, const struct dig_machine_dig *const dig,
                       const double time_s, size_t *const near)
 {
@@ -165,7 +152,9 @@ static void add_point(struct dig_air *const air, const struct dig_machine_dig *c
     *point                            = (struct dig_air_point){ .sample = { .time_ns = 0 } };
     const double mean_s               = average(dig, time_s, near, &point->sample);
     point->sample.time_ns             = llround(1e9 * mean_s);
-    point->rates                      = rates_at(dig, mean_s, *near);
+    // Those of the sample before would be half a sample old on average, which at 50 Hz looks like a
+    // delay of 10 ms.
+    point->rates = dig_machine_dig_rates(dig, dig_machine_dig_between(dig, mean_s, *near));
 }
 
 static void add_segment(struct dig_air *const air, const struct dig_machine_dig *const dig,
@@ -234,7 +223,7 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
         return DIG_ENOMEM;
     }
     for (size_t d = 0; d < digs; d++) {
-        if (used[d]) {
+        if (used == NULL || used[d]) {
             add_segment(&made, &dig[d], d, false);
             add_segment(&made, &dig[d], d, true);
         }

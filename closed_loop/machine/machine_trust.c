@@ -1,0 +1,97 @@
+// How far each row of free air can be trusted: where effects explain much of it, the form of what
+// they explain may be wrong, and a rod that stands may be held.
+
+#include "closed_loop/machine/machine_lines.h"
+#include "estimator/effects/effect.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// Adds what may be wrong with the form of what an effect explains of every row, in its sigmas: rows
+// of a joint follow each other every DIG_JOINTS rows at most.
+static void add_form(const struct dig_air *const air, const enum dig_effect_id effect,
+                     const double explained[], double wrong[])
+{
+    const struct dig_effect *const known = dig_effect_of(effect);
+    for (size_t r = 0; r < air->rows; r++) {
+        const double here = fabs(explained[r]);
+        double       most = here;
+        size_t       by   = r > DIG_JOINTS ? r - DIG_JOINTS : 0;
+        for (; by <= r + DIG_JOINTS && by < air->rows; by++) {
+            if (air->row[by].joint == air->row[r].joint &&
+                air->row[by].segment == air->row[r].segment) {
+                most = fmax(most, fabs(explained[by]));
+            }
+        }
+        wrong[r] += known->wrong_share * here + known->wrong_step * (most - here);
+    }
+}
+
+// Chi-squared of sums over one segment and joint each: what is slow shows here best.
+static double slow_rest2(const struct dig_lines *const lines, const double rest[],
+                         const double wrong[])
+{
+    double sum = 0.0;
+    for (size_t s = 0; s < lines->air->segments; s++) {
+        const struct dig_air_segment *const segment = &lines->air->segment[s];
+
+        double of[DIG_JOINTS]    = { 0.0 };
+        double off[DIG_JOINTS]   = { 0.0 };
+        double count[DIG_JOINTS] = { 0.0 };
+        for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
+            const enum dig_joint j = lines->air->row[r].joint;
+            of[j] += rest[r];
+            off[j] += wrong[r];
+            count[j] += 1.0;
+        }
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            sum += count[j] > 0.0 ? of[j] * of[j] / (count[j] + off[j] * off[j]) : 0.0;
+        }
+    }
+    return sum;
+}
+
+// What an effect explains of every row whose rest with all of them is given; false when it has no
+// values.
+static bool explain(const struct dig_lines *const lines, const enum dig_effect_id effect,
+                    const double rest[], double explained[])
+{
+    double at[DIG_LINES_COLUMNS_MAX];
+    bool   any = false;
+    for (size_t c = 0; c < lines->columns; c++) {
+        const bool mine = lines->column[c].effect == effect;
+        any             = any || (mine && fabs(lines->at[c]) > 0.0);
+        at[c]           = mine ? 0.0 : lines->at[c];
+    }
+    if (any) {
+        dig_lines_rest(lines, at, explained);
+    }
+    for (size_t r = 0; r < lines->air->rows && any; r++) {
+        explained[r] -= rest[r];
+    }
+    return any;
+}
+
+double dig_lines_judge(struct dig_lines *const lines)
+{
+    assert(lines != NULL);
+    const size_t  rows      = lines->air->rows;
+    double *const rest      = lines->work;
+    double *const explained = rest + rows;
+    double *const wrong     = rest + 2 * rows;
+    memset(wrong, 0, rows * sizeof *wrong);
+    dig_lines_rest(lines, lines->at, rest);
+    for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
+        if (explain(lines, (enum dig_effect_id)e, rest, explained)) {
+            add_form(lines->air, (enum dig_effect_id)e, explained, wrong);
+        }
+    }
+    dig_lines_correct(lines, lines->at, lines->correction);
+    dig_air_held(lines->air, lines->correction, explained);
+    for (size_t r = 0; r < rows; r++) {
+        wrong[r] += explained[r];
+        lines->trust[r] = 1.0 / hypot(1.0, wrong[r]);
+    }
+    return slow_rest2(lines, rest, wrong);
+}
