@@ -248,22 +248,23 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
         .point  = malloc(made.samples * sizeof *v.point),
         .sample = malloc(made.samples * sizeof *v.sample),
     };
-    made.lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     if (v.point == NULL || v.sample == NULL) {
-        status = dig_error_set(error, DIG_ENOMEM, "%zu samples", made.samples);
+        status = DIG_ENOMEM;
+        (void)dig_error_set(error, status, "%zu samples", made.samples);
+        goto done;
     }
-    if (status == DIG_OK) {
-        status = check_jump(&made, error);
-    }
+    made.lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    status      = check_jump(&made, error);
     if (status == DIG_OK) {
         status = place(machine, set, trajectory, &v, &made, error);
     }
+done:
     free(v.point);
     free(v.sample);
-    if (status != DIG_OK) {
+    if (status == DIG_OK) {
+        *dig = made;
+    } else {
         dig_machine_dig_finish(&made);
-        return status;
     }
-    *dig = made;
-    return DIG_OK;
+    return status;
 }
