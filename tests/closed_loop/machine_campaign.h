@@ -73,6 +73,8 @@ struct fault {
     double hunting_Pa;  // 1 sigma of every pressure, forgotten in a tenth of a second
     double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
     size_t stands;      // so many samples more, as the first, before the machine moves
+    size_t rests;       // so many samples more where it is about to go in: the ground
+    double ground_kg;   // carries so much of the bucket there
     double slews_radps; // at most, from the first of those to the last
     bool   slews_after; // from the end of the dig to that of the recording instead
     size_t every;       // one sample in so many is recorded; 0: all are
@@ -200,15 +202,21 @@ static inline size_t last_of_soil(const struct dig_rig_track *const t)
     return last;
 }
 
+static inline size_t first_of_soil(const struct dig_rig_track *const t)
+{
+    size_t first = 0;
+    while (!(fabs(t->row[first].soil.M_Nm) > 0.0)) {
+        first++;
+    }
+    return first;
+}
+
 static inline void cut_air(const struct dig_rig_track *const   t,
                            struct dig_machine_recording *const r)
 {
     const size_t last  = last_of_soil(t);
-    size_t       first = 0;
-    while (!(fabs(t->row[first].soil.M_Nm) > 0.0)) {
-        first++;
-    }
-    r->rows = last + 1 - first;
+    const size_t first = first_of_soil(t);
+    r->rows            = last + 1 - first;
     memmove(r->row, r->row + first, r->rows * sizeof *r->row);
 }
 
@@ -240,27 +248,32 @@ static inline struct dig_machine_recording
 record(const int kind, const size_t order, const struct fault *const fault, const uint64_t seed)
 {
     const struct dig_rig_track *const t     = &track[kind];
-    const size_t                      rows  = t->rows + fault->stands;
+    const size_t                      rows  = t->rows + fault->stands + fault->rests;
     struct dig_machine_recording      r     = { rows, malloc(rows * sizeof *r.row) };
     struct dig_rig_noise              noise = dig_rig_noise_init(seed);
     const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
     const double                      kept  = exp(-t->step_s / 0.1);
+    const size_t                      touch = fault->stands + first_of_soil(t) - 15;
     const size_t slew_from = fault->slews_after ? fault->stands + last_of_soil(t) : 0;
     const size_t slew_to   = fault->slews_after ? rows - 1 : fault->stands;
     double       hunts_Pa[2 * DIG_JOINTS] = { 0.0 };
     double       bent_m[DIG_JOINTS]       = { 0.0 };
     uint64_t     state                    = seed;
     for (size_t i = 0; i < rows; i++) {
-        const size_t       now  = i > fault->stands ? i - fault->stands : 0;
-        const size_t       then = now > late ? now - late : 0;
-        struct dig_rig_row row  = t->row[then];
+        const bool         rests = i >= touch && i < touch + fault->rests;
+        const size_t       moved = rests ? touch : i < touch ? i : i - fault->rests;
+        const size_t       now   = moved > fault->stands ? moved - fault->stands : 0;
+        const size_t       then  = now > late ? now - late : 0;
+        struct dig_rig_row row   = t->row[then];
         push_more(&row, DIG_JOINT_BUCKET,
                   fault->dry_N * tanh(rod_mps(t, then, DIG_JOINT_BUCKET) / 0.002));
         bend(t, then, bent_m);
         for (int j = 0; j < DIG_JOINTS; j++) {
             push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
-            const double time_s = t->step_s * (double)then + 40.0 * (double)order;
-            push_more(&row, j, weight_N(t, then, j, DIG_JOINT_BUCKET, carried_kg(fault, order)));
+            const double time_s    = t->step_s * (double)then + 40.0 * (double)order;
+            const double ground_kg = rests ? fault->ground_kg : 0.0;
+            push_more(&row, j,
+                      weight_N(t, then, j, DIG_JOINT_BUCKET, carried_kg(fault, order) - ground_kg));
             for (int link = j; link < DIG_JOINTS; link++) {
                 push_more(&row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
             }

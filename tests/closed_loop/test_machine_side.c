@@ -359,6 +359,21 @@ TEST(a_machine_that_slews_as_it_closes_its_bucket_hides_no_seal)
     end(c);
 }
 
+// Before it digs, a bucket often rests where it will go in; what the ground carries there is not of
+// the machine.
+TEST(a_bucket_that_rests_on_the_ground_raises_no_alarm_and_hides_no_seal)
+{
+    const struct fault rests = { .rests = 300, .ground_kg = 400.0 };
+    struct campaign   *c     = trace(&rests, 106);
+    assert_false(c->finding.significant);
+    assert_close(c->finding.residual_air, 0.95, 0.15);
+    end(c);
+    const struct fault both = { .rests = 300, .ground_kg = 400.0, .dry_N = 4000.0 };
+    c                       = trace(&both, 107);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
