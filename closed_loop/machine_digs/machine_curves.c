@@ -131,6 +131,7 @@ static bool observe(const struct dig_curve_set *const set, const struct dig_mach
     size_t of   = 0;
     dig_window_close(window);
     dig_window_open(window);
+    window->in_progress = dig->end == dig->samples; // nothing behind its end smooths it
     for (size_t i = all->from; i < all->to; i += all->every) {
         const struct reading *const r      = &all->at[i - all->from];
         const bool                  inside = i >= dig->contact && i < dig->end;

@@ -16,6 +16,14 @@ static const double spacing_share = 0.025;
 static const double limit_share   = 0.09;
 static const double turned_share  = 0.12;
 
+// Of its trajectory a recording may lack so much at its end, as one by force may (alignment.c), and
+// so much at its beginning: farther on a window does not look for it. Looked for are more, in
+// steps, so that one that lacks too much is refused as that.
+static const double end_missing   = 0.3;
+static const double begin_missing = 0.1;
+static const double begin_step    = 0.05;
+enum { BEGINNINGS = 8 };
+
 // The ends of a dig are blended and may be cut: they do not tell its pace.
 static const double blended_share = 0.05;
 
@@ -56,50 +64,72 @@ static void lay_out(const struct dig_machine *const machine, const struct dig_cu
     }
 }
 
-// How far the bucket is turned at a point against the route's start, within the route's range.
-static double turn_at(const struct dig_route *const route, const struct dig_path_point *const at)
+// How far the bucket is turned at a point against one of the route's, within the route's range.
+static double turn_at(const struct dig_route *const route, const struct dig_path_point *const at,
+                      const struct dig_path_point *const begun)
 {
-    return fmin(fmax(at->turn_m - route->corner[0].turn_m, route->turn_least_m),
-                route->turn_most_m);
+    return fmin(fmax(at->turn_m - begun->turn_m, route->turn_least_m), route->turn_most_m);
 }
 
-// How far the path from a vertex on lies off the route begun there, turned as there: rms, in which
-// what is missing of the route counts whole. end: the vertex at which the route is done.
-static double off_route_m(const struct dig_route *const route, const struct dig_vertices *const v,
-                          const size_t start, const double tooth_m, const double enough_m,
-                          size_t *const end)
+// A dig along a trajectory.
+struct found {
+    double off_m; // rms, in which what is missing counts whole
+    int    trajectory;
+    size_t start, end;  // vertices
+    double begin, last; // progress there
+};
+
+// How far the path from a vertex on lies off the route begun there at a progress, turned as there:
+// rms, in which what is missing of the route counts whole, but for what the recording's end may
+// take.
+static void follow(const struct dig_route *const route, const struct dig_vertices *const v,
+                   const double tooth_m, const double enough_m, struct found *const found)
 {
+    const size_t                start   = found->start;
     const double                whole_m = route->at_m[route->corners - 1];
     const size_t                most    = (size_t)(1.5 * whole_m / (spacing_share * tooth_m)) + 2;
     const struct dig_path_point from    = v->point[start];
-    const double                dx_m    = from.x_m - route->corner[0].x_m;
-    const double                dz_m    = from.z_m - route->corner[0].z_m;
+    const struct dig_path_point begun   = dig_route_point(route, found->begin);
+    const double                dx_m    = from.x_m - begun.x_m;
+    const double                dz_m    = from.z_m - begun.z_m;
 
-    const struct dig_track begun  = { .turn_m = turn_at(route, &from) };
+    const struct dig_track turned = { .turn_m = turn_at(route, &from, &begun) };
     double                 sum_m2 = 0.0;
-    double                 last   = 0.0;
+    double                 last   = found->begin;
     size_t                 i      = start;
     for (; i < v->count && i < start + most && last < 0.99; i++) {
-        const struct dig_path_point at = dig_track_turned(&begun, &v->point[i]);
+        const struct dig_path_point at = dig_track_turned(&turned, &v->point[i]);
         const struct dig_projection place =
             dig_route_project(route, dx_m, dz_m, &at, last - 0.02, fmin(last + 0.1, 1.0));
         sum_m2 += place.distance_m * place.distance_m;
         last = fmax(last, place.progress);
         if (sum_m2 > (double)most * enough_m * enough_m) {
-            return INFINITY;
+            found->off_m = INFINITY;
+            return;
         }
     }
-    *end = i;
-    return sqrt(sum_m2 / (double)(i - start)) + (last < 0.99 ? (1.0 - last) * whole_m : 0.0);
+    const double taken = i == v->count ? end_missing : 0.0;
+    found->end         = i;
+    found->last        = last;
+    found->off_m       = sqrt(sum_m2 / (double)(i - start)) +
+                   (last < 0.99 ? fmax(1.0 - last - taken, 0.0) * whole_m : 0.0);
 }
 
-struct found {
-    double off_m;
-    int    trajectory;
-    size_t start, end; // vertices
-};
+// Tries one vertex as one place of a route.
+static void try(const struct dig_curve_set *const set, const struct dig_vertices *const v,
+                const struct dig_route *const route, struct found tried, struct found *const best)
+{
+    const struct dig_path_point begun  = dig_route_point(route, tried.begin);
+    const double                turn_m = v->point[tried.start].turn_m - begun.turn_m;
+    if (fabs(turn_m - turn_at(route, &v->point[tried.start], &begun)) <=
+        turned_share * set->tooth_m) {
+        follow(route, v, set->tooth_m, best->off_m, &tried);
+        *best = tried.off_m < best->off_m ? tried : *best;
+    }
+}
 
-// Tries every vertex as the start of every trajectory asked for.
+// Tries every vertex as the start of every trajectory asked for, and the first as a place behind
+// it.
 static struct found search(const struct dig_curve_set *const set,
                            const struct dig_vertices *const v, const int asked)
 {
@@ -110,15 +140,11 @@ static struct found search(const struct dig_curve_set *const set,
         }
         const struct dig_route route = dig_approach_route(set, t);
         for (size_t s = 0; s + 2 < v->count; s++) {
-            const double turn_m = v->point[s].turn_m - route.corner[0].turn_m;
-            if (fabs(turn_m - turn_at(&route, &v->point[s])) > turned_share * set->tooth_m) {
-                continue;
-            }
-            size_t       end   = s;
-            const double off_m = off_route_m(&route, v, s, set->tooth_m, best.off_m, &end);
-            if (off_m < best.off_m) {
-                best = (struct found){ off_m, (int)t, s, end };
-            }
+            try(set, v, &route, (struct found){ .trajectory = (int)t, .start = s }, &best);
+        }
+        for (int k = 1; k <= BEGINNINGS && v->count > 2; k++) {
+            const double begin = begin_step * (double)k;
+            try(set, v, &route, (struct found){ .trajectory = (int)t, .begin = begin }, &best);
         }
     }
     return best;
@@ -141,13 +167,14 @@ struct dig_track dig_machine_dig_fit(const struct dig_curve_set *const   set,
     return dig_track_fit(&route, &path, limit_share * set->tooth_m);
 }
 
-// middle_s: rig time from a twentieth of the path to the end less that.
+// middle_s: rig time from a progress to another.
 static double pace_of(const struct dig_curve_set *const   set,
-                      const struct dig_machine_dig *const dig, const double middle_s)
+                      const struct dig_machine_dig *const dig, const double from, const double to,
+                      const double middle_s)
 {
     const struct dig_trajectory *const t = &set->trajectory[dig->trajectory];
-    const double table_s = dig_trajectory_time_s(t, set->tooth_m, 1.0 - blended_share) -
-                           dig_trajectory_time_s(t, set->tooth_m, blended_share);
+    const double                       table_s =
+        dig_trajectory_time_s(t, set->tooth_m, to) - dig_trajectory_time_s(t, set->tooth_m, from);
     return middle_s > 0.0 ? table_s / middle_s : 1.0;
 }
 
@@ -159,11 +186,14 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
     // The last sample still at the start, and the first at the end.
     const size_t from   = v->sample[found->start > 12 ? found->start - 12 : 0];
     const size_t to     = found->end < v->count ? v->sample[found->end] : dig->samples;
-    double       last   = 0.0;
+    double       last   = found->begin;
     double       from_s = (double)NAN; // of the middle, and to
     double       to_s   = (double)NAN;
-    dig->contact        = from;
-    dig->end            = to;
+    // A recording that begins or ends in its dig tells the pace of what it has.
+    const double first_share = fmax(found->begin + begin_step, blended_share);
+    const double last_share  = fmin(found->last - 0.5 * begin_step, 1.0 - blended_share);
+    dig->contact             = from;
+    dig->end                 = to;
     for (size_t i = from; i < dig->samples; i++) {
         const struct dig_path_point point = point_of(machine, set, dig, i);
         const struct dig_path_point at    = dig_track_turned(&dig->track, &point);
@@ -176,14 +206,14 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
         if (last <= 0.0) {
             dig->contact = i + 1;
         }
-        from_s = isnan(from_s) && last >= blended_share ? dig->time_s[i] : from_s;
-        to_s   = isnan(to_s) && last >= 1.0 - blended_share ? dig->time_s[i] : to_s;
+        from_s = isnan(from_s) && last >= first_share ? dig->time_s[i] : from_s;
+        to_s   = isnan(to_s) && last >= last_share ? dig->time_s[i] : to_s;
         if (last >= 1.0 - 1e-9) {
             dig->end = i;
             break;
         }
     }
-    dig->pace = pace_of(set, dig, (to_s - from_s) / sqrt(dig->lambda));
+    dig->pace = pace_of(set, dig, first_share, last_share, (to_s - from_s) / sqrt(dig->lambda));
     dig_free_air_find(v, found->start, found->end, set->tooth_m, dig);
 }
 
@@ -206,12 +236,22 @@ static enum dig_status place(const struct dig_machine *const   machine,
 
     dig->trajectory = found.trajectory;
     dig->track      = dig_machine_dig_fit(set, dig, before, found.end - first, &v->point[first]);
+    if (found.end == v->count && found.last < 1.0 - end_missing && dig->track.rms_m <= limit_m) {
+        return dig_error_set(error, DIG_ENOMATCH,
+                             "it ends %.0f %% along %s, expected at least %.0f %%",
+                             100.0 * found.last, along, 100.0 * (1.0 - end_missing));
+    }
     if (!(dig->track.rms_m <= limit_m) || !(found.off_m <= 3.0 * limit_m)) {
         return dig_error_set(
             error, DIG_ENOMATCH,
             "no dig along %s in it: the nearest path lies %.3f bucket lengths off, expected at "
             "most %.2f",
             along, fmax(dig->track.rms_m, found.off_m / 3.0) / set->tooth_m, limit_share);
+    }
+    if (found.begin > begin_missing + 1e-9) {
+        return dig_error_set(error, DIG_ENOMATCH,
+                             "it begins %.0f %% along %s, expected at most %.0f %%",
+                             100.0 * found.begin, along, 100.0 * begin_missing);
     }
     split(machine, set, &route, v, &found, dig);
     return DIG_OK;
