@@ -140,7 +140,7 @@ static void add_rows(struct dig_air *const air, const size_t first, const size_t
             block_sigma_N(&air->machine, &air->point[first], points, j, sigma_N[j], per_point);
         if (sigma > 0.0) {
             air->row[air->rows++] =
-                (struct dig_air_row){ segment, (enum dig_joint)j, first, points, sigma };
+                (struct dig_air_row){ segment, (enum dig_joint)j, first, points, sigma, 1.0 };
         }
     }
 }

@@ -118,21 +118,28 @@ static enum dig_status open_depth(const struct dig_whitened_digs *const batch, c
     return status;
 }
 
-// What lasts of the sensors' noise.
+// What lasts of the sensors' noise, as digs of a trajectory have it on average.
 static void fill_lasting(const struct dig_whitened_digs *const batch, const size_t g,
                          struct dig_whitened_digs_group *const group)
 {
-    const struct dig_lasting *const   noise = &dig_whitened_digs_first(batch, g)->lasting;
-    const struct dig_curve_set *const set   = batch->soil->surface->set;
+    const double memory_s                 = dig_whitened_digs_first(batch, g)->lasting.memory_s;
+    const struct dig_curve_set *const set = batch->soil->surface->set;
     memset(group->lasting, 0, sizeof group->lasting);
-    memcpy(group->lasting_sigma, noise->sigma, sizeof group->lasting_sigma);
-    if (noise->memory_s > 0.0) {
+    memset(group->lasting_sigma, 0, sizeof group->lasting_sigma);
+    for (size_t i = 0; i < batch->digs; i++) {
+        const struct dig_lasting *const one = &batch->measured[batch->dig[i].measured].lasting;
+        for (size_t c = 0; batch->dig[i].group == g && c < DIG_FORCE_CHANNELS; c++) {
+            group->lasting_sigma[c] =
+                hypot(group->lasting_sigma[c], one->sigma[c] / sqrt((double)group->digs));
+        }
+    }
+    if (memory_s > 0.0) {
         double edge_s[DIG_FEATURE_BINS + 1];
         for (size_t b = 0; b <= DIG_FEATURE_BINS; b++) {
             edge_s[b] = dig_trajectory_time_s(&set->trajectory[group->trajectory], set->tooth_m,
                                               (double)b / DIG_FEATURE_BINS);
         }
-        dig_features_lasting(edge_s, set->smooth_half_s, noise->memory_s, group->lasting);
+        dig_features_lasting(edge_s, set->smooth_half_s, memory_s, group->lasting);
     }
 }
 

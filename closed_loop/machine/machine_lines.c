@@ -271,6 +271,12 @@ void dig_lines_update(struct dig_lines *const lines, const unsigned set)
     sum_up(lines, rest, slope);
 }
 
+const double *dig_lines_slope(const struct dig_lines *const lines, const size_t column)
+{
+    assert(lines != NULL && column < lines->columns);
+    return lines->work + (3 + column) * lines->air->rows;
+}
+
 void dig_lines_rest(const struct dig_lines *const lines, const double at[], double rest[])
 {
     assert(lines != NULL && at != NULL && rest != NULL);

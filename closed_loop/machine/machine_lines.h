@@ -53,7 +53,7 @@ struct dig_lines {
     struct dig_lines_normal normal[DIG_MEASURED_MAX];      // of each dig
     double                 *normals;                       // theirs
     double                 *trust;      // [rows] what each row's rest and slopes are multiplied by
-    double                 *work;       // [3 + columns][rows]; no function keeps anything there
+    double                 *work;       // [3 + columns][rows]; see dig_lines_update()
     struct dig_correction  *correction; // [segments]; the same
 };
 
@@ -74,7 +74,12 @@ void dig_lines_finish(struct dig_lines *lines);
 
 /// Makes the equations linear around at, for the effects of the set (a bit each); columns of others
 /// count as without effect. Two evaluations of the air a column: some tenths of a second for all.
+/// Leaves in work what is left of every row, as far as it is trusted, which any function that needs
+/// room overwrites, and the slopes.
 void dig_lines_update(struct dig_lines *lines, unsigned set);
+
+/// How every row changes with a column, as far as it is trusted, as last updated: [rows].
+const double *dig_lines_slope(const struct dig_lines *lines, size_t column);
 
 /// Trusts every row as far as the form of what is explained of it where the lines stand can be
 /// trusted. How much is left in the means of segments: chi-squared, one degree of freedom for every

@@ -2,6 +2,8 @@
 // effects that explain them.
 
 #include "closed_loop/machine/machine_search.h"
+#include "closed_loop/machine/machine_noise.h"
+#include "closed_loop/machine/machine_slew.h"
 #include "core/chance.h"
 
 #include <assert.h>
@@ -44,6 +46,87 @@ static enum dig_status search_make(const struct dig_machine_side *const side,
     }
     tolerance_of(&s->air, scale);
     return dig_fit_make(&s->air, scale, &s->fit);
+}
+
+// Noise of the air but for what slewing pulls. Where there is no air, none.
+static enum dig_status tell_noise(const struct dig_machine_side *const side,
+                                  struct dig_machine_noise *const      noise)
+{
+    enum { ROUNDS = 6 };
+    static const unsigned     all    = DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE;
+    struct dig_machine_search s      = { .set = 0 };
+    struct dig_fit_answer     answer = { .at = s.fit.at };
+    enum dig_status           status = search_make(side, &s);
+    bool                      slews  = status == DIG_OK && s.air.rows > 0;
+    *noise                           = (struct dig_machine_noise){ .memory_s = 0.0 };
+    for (int round = 0; round < ROUNDS && slews; round++) {
+        dig_lines_update(&s.fit.lines, all);
+        dig_fit_sum(&s.fit, NULL, NULL);
+        dig_fit_solve(&s.fit, DIG_MACHINE_ALL_EFFECTS, &answer);
+        slews = dig_slew_leave_out(&s.fit.lines, s.fit.at);
+    }
+    if (status == DIG_OK && s.air.rows > 0) {
+        status = dig_machine_noise_tell(&s.fit.lines, s.fit.at, noise);
+    }
+    search_finish(&s);
+    return status;
+}
+
+// What a drive's push that is off by so much does to a dig: rms of each channel, squared.
+static enum dig_status add_push(const struct dig_machine_side *const side, const size_t dig,
+                                const int joint, const double push_N,
+                                const struct dig_measured *const as_it_is,
+                                double                           square[DIG_FORCE_CHANNELS])
+{
+    const struct dig_cylinder *const cylinder = &side->machine.cylinder[joint];
+    struct dig_measured              off      = *as_it_is;
+    struct dig_correction            by       = { .delay_s = 0.0 };
+    by.offset_Pa[joint][DIG_CHAMBER_HEAD] =
+        push_N / (cylinder->count * dig_cylinder_head_m2(cylinder));
+    const enum dig_status status = dig_machine_dig_measure(
+        &side->machine, side->set, &side->dig[dig], &by, DIG_MEASURE_ROUGHLY, &off);
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
+        for (size_t k = 0; k < DIG_CURVE_POINTS && off.measured[c] && as_it_is->measured[c]; k++) {
+            square[c] += pow(off.value[c][k] - as_it_is->value[c][k], 2.0) / DIG_CURVE_POINTS;
+        }
+    }
+    return status;
+}
+
+// Lasting noise of one dig.
+static enum dig_status lasting_of(const struct dig_machine_side *const  side,
+                                  const struct dig_machine_noise *const noise, const size_t dig,
+                                  struct dig_measured *const measured)
+{
+    static const struct dig_correction none                       = { .delay_s = 0.0 };
+    struct dig_measured                rough                      = *measured;
+    double                             square[DIG_FORCE_CHANNELS] = { 0.0 };
+    enum dig_status status = dig_machine_dig_measure(&side->machine, side->set, &side->dig[dig],
+                                                     &none, DIG_MEASURE_ROUGHLY, &rough);
+    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        if (noise->sigma_N[dig][j] > 0.0) {
+            status = add_push(side, dig, j, noise->sigma_N[dig][j], &rough, square);
+        }
+    }
+    if (status == DIG_OK) {
+        measured->lasting.memory_s = noise->memory_s * measured->pace / sqrt(side->dig[dig].lambda);
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            measured->lasting.sigma[c] = sqrt(square[c]);
+        }
+    }
+    return status == DIG_ENOMATCH ? DIG_OK : status; // a drive at its stop: not told
+}
+
+enum dig_status dig_machine_side_tell_noise(const struct dig_machine_side *const side,
+                                            struct dig_measured                  measured[])
+{
+    assert(side != NULL && (side->digs == 0 || measured != NULL));
+    struct dig_machine_noise noise;
+    enum dig_status          status = tell_noise(side, &noise);
+    for (size_t d = 0; d < side->digs && status == DIG_OK && noise.memory_s > 0.0; d++) {
+        status = lasting_of(side, &noise, d, &measured[d]);
+    }
+    return status;
 }
 
 // How often each effect is chosen when the digs are drawn anew.
@@ -171,6 +254,27 @@ static void doubt_names(struct dig_machine_search *const s)
     }
 }
 
+// What is left without any effect, over what rows scatter by.
+static void write_residuals(const struct dig_machine_search *const s,
+                            struct dig_machine_finding *const      finding)
+{
+    double count[DIG_MEASURED_MAX] = { 0.0 };
+    double sum[DIG_MEASURED_MAX]   = { 0.0 };
+    double all                     = 0.0;
+    for (size_t r = 0; r < s->air.rows; r++) {
+        const struct dig_air_row *const row = &s->air.row[r];
+        const size_t                    d   = s->air.segment[row->segment].dig;
+        count[d] += 1.0;
+        sum[d] += row->alone * row->alone;
+        all += row->alone * row->alone;
+    }
+    finding->residual_air = sqrt(s->rest2_none / all);
+    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
+        finding->residual_air_of[d] =
+            count[d] > 0.0 ? s->none_of[d] * sqrt(count[d] / sum[d]) : (double)NAN;
+    }
+}
+
 static void write_finding(struct dig_machine_search *const s, const uint64_t seed,
                           double                            own_payload_kg[DIG_MEASURED_MAX],
                           struct dig_machine_finding *const finding)
@@ -179,8 +283,7 @@ static void write_finding(struct dig_machine_search *const s, const uint64_t see
     doubt_names(s);
     const bool unclear = dig_machine_is_unclear(s) || s->drift.follows != NULL;
     *finding = (struct dig_machine_finding){ .unexplained = unclear, .follows = s->drift.follows };
-    finding->residual_air = sqrt(s->rest2_none / (double)s->air.rows);
-    memcpy(finding->residual_air_of, s->none_of, sizeof s->none_of);
+    write_residuals(s, finding);
     finding->significant = s->set != 0 || unclear;
     bootstrap(s, seed, inclusion);
     write_candidates(s, inclusion, finding);

@@ -89,6 +89,11 @@ DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *s
                                                       double false_alarm, uint64_t seed,
                                                       struct dig_machine_finding *finding);
 
+/// Leaves in measured[].lasting what noise that free air shows to last (machine_noise.h) does to
+/// each dig; nothing where it shows none. DIG_ENOMEM. Some tenths of a second.
+DIG_MUST_CHECK enum dig_status dig_machine_side_tell_noise(const struct dig_machine_side *side,
+                                                           struct dig_measured measured[]);
+
 /// Which digs effects are applied to, and how carefully: ROUGHLY, to those fitted to, for
 /// differences of two such.
 enum dig_apply { DIG_APPLY_TO_ALL, DIG_APPLY_TO_FITTED, DIG_APPLY_ROUGHLY };

@@ -251,6 +251,9 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
     if (status == DIG_OK) {
         status = check_digs(w, error);
     }
+    if (status == DIG_OK && w->machine != NULL) {
+        status = dig_machine_side_tell_noise(w->machine, w->measured);
+    }
     if (status == DIG_OK) {
         status = dig_trace_batch(w, &w->before, error);
     }

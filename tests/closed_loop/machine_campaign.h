@@ -70,7 +70,8 @@ struct fault {
     bool   was_there;              // in the first already, twice as much
     double wandering_N;            // of all drives, by a slow sine: nothing the catalogue holds
     double warm_perK; // pressures read so much more for every degree above 45, where it is recorded
-    double hunting_Pa;  // 1 sigma of every pressure, forgotten in a tenth of a second
+    double hunting_Pa; // 1 sigma of every pressure, forgotten in so many seconds; 0: in a tenth
+    double hunting_s;
     double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
     size_t stands;      // so many samples more, as the first, before the machine moves
     size_t rests;       // so many samples more where it is about to go in: the ground
@@ -247,13 +248,14 @@ static inline double slewing_radps(const struct fault *const fault, const size_t
 static inline struct dig_machine_recording
 record(const int kind, const size_t order, const struct fault *const fault, const uint64_t seed)
 {
-    const struct dig_rig_track *const t     = &track[kind];
-    const size_t                      rows  = t->rows + fault->stands + fault->rests;
-    struct dig_machine_recording      r     = { rows, malloc(rows * sizeof *r.row) };
-    struct dig_rig_noise              noise = dig_rig_noise_init(seed);
-    const size_t                      late  = (size_t)lround(fault->late_s / t->step_s);
-    const double                      kept  = exp(-t->step_s / 0.1);
-    const size_t                      touch = fault->stands + first_of_soil(t) - 15;
+    const struct dig_rig_track *const t         = &track[kind];
+    const size_t                      rows      = t->rows + fault->stands + fault->rests;
+    struct dig_machine_recording      r         = { rows, malloc(rows * sizeof *r.row) };
+    struct dig_rig_noise              noise     = dig_rig_noise_init(seed);
+    const size_t                      late      = (size_t)lround(fault->late_s / t->step_s);
+    const double                      hunting_s = fault->hunting_s > 0.0 ? fault->hunting_s : 0.1;
+    const double                      kept      = exp(-t->step_s / hunting_s);
+    const size_t                      touch     = fault->stands + first_of_soil(t) - 15;
     const size_t slew_from = fault->slews_after ? fault->stands + last_of_soil(t) : 0;
     const size_t slew_to   = fault->slews_after ? rows - 1 : fault->stands;
     double       hunts_Pa[2 * DIG_JOINTS] = { 0.0 };

@@ -1,7 +1,7 @@
 // Tests for closed_loop/machine/machine_side.c and its parts.
 
 #include "closed_loop/machine/machine_lines.h"
-#include "closed_loop/recordings/machine_dig.h"
+#include "closed_loop/machine_digs/machine_dig.h"
 #include "tests/closed_loop/machine_campaign.h"
 
 // Under a sanitizer one seed tells as much as several, and none where another test has the lines.
@@ -389,6 +389,77 @@ TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
     struct campaign *const c    = trace(&both, 33);
     expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
     end(c);
+}
+
+// Noise of half a second hardly averages: it is as large in the means of a segment as effects are.
+TEST(noise_that_lasts_raises_no_alarm_and_hides_no_seal)
+{
+    for (uint64_t seed = 111; seed <= most(111, 113); seed++) {
+        const struct fault     hunting = { .hunting_Pa = 2e5, .hunting_s = 0.5 };
+        struct campaign *const c       = trace(&hunting, seed);
+        assert_nothing_found(c);
+        assert_close(c->finding.residual_air, 1.0, 0.3);
+        end(c);
+    }
+    const struct fault     both = { .hunting_Pa = 2e5, .hunting_s = 0.5, .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&both, 114);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+}
+
+// What every drive's noise does to the moment of a dig: the bucket's push, about its pin.
+static double lasting_Nm(const int kind, const double each_Pa)
+{
+    const struct dig_rig_track *const t = &track[kind];
+
+    const double push_sigma_N =
+        hypot(push_N(DIG_JOINT_BUCKET, each_Pa, 0.0), push_N(DIG_JOINT_BUCKET, 0.0, each_Pa));
+    double square = 0.0;
+    double count  = 0.0;
+    for (size_t i = 0; i < t->rows; i++) {
+        double lever_m;
+        if (fabs(t->row[i].soil.M_Nm) > 0.0 &&
+            dig_rig_lever_m(&machine, DIG_JOINT_BUCKET, t->row[i].joints.rad[DIG_JOINT_BUCKET],
+                            &lever_m) == DIG_OK) {
+            square += pow(push_sigma_N * lever_m, 2.0);
+            count += 1.0;
+        }
+    }
+    return sqrt(square / count);
+}
+
+TEST(free_air_tells_how_large_noise_is_in_a_dig_and_how_long_it_lasts)
+{
+    const double lambda = machine.link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
+    for (int k = 0; k < 3; k++) {
+        static const double    lasts_s[] = { 0.1, 0.2, 0.4 };
+        const struct fault     hunting   = { .hunting_Pa = 2e5, .hunting_s = lasts_s[k] };
+        struct campaign *const c         = measure(&hunting, 121 + (uint64_t)k);
+        assert_int_equal(dig_machine_side_tell_noise(c->side, c->measured), DIG_OK);
+        for (int d = 0; d < DIGS; d++) {
+            const struct dig_lasting *const noise = &c->measured[d].lasting;
+
+            const double seen_s  = noise->memory_s * sqrt(lambda);
+            const double seen_Nm = noise->sigma[DIG_CHANNEL_MY_Nm] * pow(lambda, 4.0);
+            print_message("%.2f s for %.2f, %.0f Nm for %.0f\n", seen_s, lasts_s[k], seen_Nm,
+                          lasting_Nm(d % KINDS, 2e5));
+            assert_true(seen_s > 0.45 * lasts_s[k] && seen_s < 2.2 * lasts_s[k]);
+            assert_close(seen_Nm / lasting_Nm(d % KINDS, 2e5), 1.0, 0.4);
+            assert_true(noise->sigma[DIG_CHANNEL_FX_N] > 0.0);
+            assert_true(noise->sigma[DIG_CHANNEL_FZ_N] > 0.0);
+        }
+        end(c);
+    }
+    // Neither a machine without noise nor one that goes slowly up and down.
+    static const struct fault quiet[] = { { .dry_N = 0.0 }, { .wandering_N = 3000.0 } };
+    for (size_t k = 0; k < sizeof quiet / sizeof quiet[0]; k++) {
+        struct campaign *const c = measure(&quiet[k], 131 + k);
+        assert_int_equal(dig_machine_side_tell_noise(c->side, c->measured), DIG_OK);
+        for (int d = 0; d < DIGS; d++) {
+            assert_close(c->measured[d].lasting.sigma[DIG_CHANNEL_FX_N], 0.0, 0.0);
+        }
+        end(c);
+    }
 }
 
 // Missing is not zero: neither noise nor an effect is made of it.
