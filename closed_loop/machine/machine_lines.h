@@ -82,7 +82,8 @@ void dig_lines_update(struct dig_lines *lines, unsigned set);
 const double *dig_lines_slope(const struct dig_lines *lines, size_t column);
 
 /// Trusts every row as far as the form of what is explained of it where the lines stand can be
-/// trusted. How much is left in the means of segments: chi-squared, one degree of freedom for every
+/// trusted: an effect says how far its form may be wrong, and the rest of the rows how much of that
+/// is. How much is left in the means of segments: chi-squared, one degree of freedom for every
 /// segment and joint.
 double dig_lines_judge(struct dig_lines *lines);
 

@@ -8,6 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+// Forms may be wrong by all of their share, by half of it, and so on.
+enum { FORM_SHARES = 4 };
+
 // Adds what may be wrong with the form of what an effect explains of every row, in its sigmas: rows
 // of a joint follow each other every DIG_JOINTS rows at most.
 static void add_form(const struct dig_air *const air, const enum dig_effect_id effect,
@@ -73,6 +76,28 @@ static bool explain(const struct dig_lines *const lines, const enum dig_effect_i
     return any;
 }
 
+// How much of what a form may be wrong by is wrong here: the share by which the rest is likeliest.
+// wrong is of all forms, held of what cannot be told from it and stays as it is.
+static double form_share(const size_t rows, const double rest[], const double wrong[],
+                         const double held[])
+{
+    double best      = 1.0;
+    double likeliest = -INFINITY;
+    for (int halved = 0; halved < FORM_SHARES; halved++) {
+        const double share          = ldexp(1.0, -halved);
+        double       log_likelihood = 0.0;
+        for (size_t r = 0; r < rows; r++) {
+            const double sigma = hypot(1.0, share * wrong[r] + held[r]);
+            log_likelihood -= log(sigma) + 0.5 * pow(rest[r] / sigma, 2.0);
+        }
+        if (log_likelihood > likeliest) {
+            likeliest = log_likelihood;
+            best      = share;
+        }
+    }
+    return best;
+}
+
 double dig_lines_judge(struct dig_lines *const lines)
 {
     assert(lines != NULL);
@@ -89,8 +114,9 @@ double dig_lines_judge(struct dig_lines *const lines)
     }
     dig_lines_correct(lines, lines->at, lines->correction);
     dig_air_held(lines->air, lines->correction, explained);
+    const double share = form_share(rows, rest, wrong, explained);
     for (size_t r = 0; r < rows; r++) {
-        wrong[r] += explained[r];
+        wrong[r]        = share * wrong[r] + explained[r];
         lines->trust[r] = 1.0 / hypot(1.0, wrong[r]);
     }
     return slow_rest2(lines, rest, wrong);

@@ -185,6 +185,20 @@ TEST(friction_and_a_strong_offset_are_both_named)
     end(clean);
 }
 
+// A strong effect whose formula is right hides little beside it.
+TEST(a_form_that_the_air_shows_to_be_right_is_trusted)
+{
+    const struct fault     seal = { .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&seal, 41);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", seal.dry_N);
+    const struct dig_model_parameter *const dry = &c->finding.effect[0].parameter[0];
+    print_message("%.0f N (%.0f to %.0f)\n", dry->value, dry->low, dry->high);
+    assert_string_equal(dry->name, "coulomb_N");
+    assert_true(dry->low < seal.dry_N && seal.dry_N < dry->high);
+    assert_true(dry->high - dry->low < 0.1 * seal.dry_N);
+    end(c);
+}
+
 // rms over one dig of what was taken off its moment less what is wrong with it, and of the latter.
 static void taken_off(const struct campaign *const c, const struct campaign *const clean,
                       const size_t d, double *const left, double *const wrong)
