@@ -8,11 +8,17 @@
 static const double least_pace  = 0.05; // range of log(pace) that can show a dependence
 static const size_t least_order = 4;    // digs that can show a trend: two that differ are none
 
+static bool is_late(const enum dig_effect_id effect)
+{
+    return effect == DIG_EFFECT_SENSOR_DELAY;
+}
+
 bool dig_hypothesis_differs(const struct dig_hypothesis *const hypothesis)
 {
     bool differs = false;
     for (size_t e = 0; e < hypothesis->effects; e++) {
-        differs = differs || dig_effect_is_by_dig(hypothesis->effect[e]);
+        differs = differs || dig_effect_is_by_dig(hypothesis->effect[e]) ||
+                  is_late(hypothesis->effect[e]);
     }
     return differs;
 }
@@ -27,9 +33,25 @@ size_t dig_hypothesis_free(const struct dig_hypothesis *const hypothesis)
     return numbers;
 }
 
+// Without rates, as a machine's, digs show nothing that is late.
+static bool any_rate(const struct dig_whitened_digs *const batch)
+{
+    bool any = false;
+    for (size_t i = 0; i < batch->digs; i++) {
+        const double *const rate = batch->measured[batch->dig[i].measured].rate;
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            any = any || fabs(rate[f]) > 0.0;
+        }
+    }
+    return any;
+}
+
 bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
                              const enum dig_effect_id              effect)
 {
+    if (dig_effect_is_of_machine(effect)) {
+        return is_late(effect) && any_rate(batch);
+    }
     for (size_t g = 0; g < batch->groups; g++) {
         if (!dig_soil_knows(batch->soil, effect, batch->group[g].trajectory)) {
             return false;
@@ -73,6 +95,9 @@ void dig_forward_add(const struct dig_soil *const soil, const struct dig_plain *
     }
     for (size_t e = 0; e < hypothesis->effects; e++) {
         const double share = dig_soil_share(hypothesis->effect[e], dig);
+        for (size_t f = 0; f < DIG_FEATURES && is_late(hypothesis->effect[e]); f++) {
+            feature[f] -= number[DIG_AT_U(e)] * dig->rate[f];
+        }
         dig_soil_add(soil, hypothesis->effect[e], (size_t)dig->trajectory, number,
                      number[DIG_AT_U(e)], number[DIG_AT_CONTRAST(e)], share, plain->feature,
                      plain->amplitude, feature, noise);

@@ -1,4 +1,5 @@
-// The forward model: what a gravel, and effects of the soil or none, make of a dig.
+// The forward model: what a gravel, and effects of the soil or none, make of a dig; and forces that
+// are read late.
 
 #ifndef DIG_CLOSED_LOOP_FIT_FORWARD_H
 #define DIG_CLOSED_LOOP_FIT_FORWARD_H
@@ -13,6 +14,7 @@
 #define DIG_AT_U(e)        (DIG_AXES + 2 * (e))
 #define DIG_AT_CONTRAST(e) (DIG_AXES + 2 * (e) + 1)
 
+/// Effects are of the soil, but for sensor_delay, which the forces of a recording may have.
 struct dig_hypothesis {
     size_t             effects; // 0: nothing but a gravel
     enum dig_effect_id effect[DIG_HYPOTHESIS_EFFECTS];

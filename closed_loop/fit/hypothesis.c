@@ -3,6 +3,7 @@
 #include "closed_loop/fit/likelihood.h"
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/numeric/levenberg.h"
+#include "closed_loop/recordings/lateness.h"
 #include "estimator/effects/effect.h"
 
 #include <math.h>
@@ -195,15 +196,21 @@ void dig_fitted_curve(const struct dig_soil *const soil, const struct dig_fitted
                       const struct dig_measured *const dig,
                       double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
-    const size_t        t      = (size_t)dig->trajectory;
-    const double *const number = fitted->number;
+    const size_t        t       = (size_t)dig->trajectory;
+    const double *const number  = fitted->number;
+    double              delay_s = 0.0;
     double              plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     dig_response_surface_curve(soil->surface, t, number, plain);
     memcpy(curve, plain, sizeof plain);
     for (size_t e = 0; e < fitted->hypothesis.effects; e++) {
         const enum dig_effect_id effect = fitted->hypothesis.effect[e];
+        delay_s += effect == DIG_EFFECT_SENSOR_DELAY ? number[DIG_AT_U(e)] : 0.0;
         dig_soil_add_curve(soil, effect, t, number, number[DIG_AT_U(e)], number[DIG_AT_CONTRAST(e)],
                            dig_soil_share(effect, dig), (const double(*)[DIG_CURVE_POINTS])plain,
                            curve);
+    }
+    if (fabs(delay_s) > 0.0) {
+        const struct dig_curve_set *const set = soil->surface->set;
+        dig_lateness_delay(&set->trajectory[t], set->tooth_m, dig->pace, delay_s, curve);
     }
 }

@@ -4,6 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H
 #define DIG_CLOSED_LOOP_RECORDINGS_MEASURED_H
 
+#include "closed_loop/recordings/features.h"
 #include "core/approach.h"
 #include "core/curve.h"
 
@@ -56,6 +57,10 @@ struct dig_measured {
     struct dig_lasting lasting;                         // verdict/trace_noise.c tells it
     // What effects of the machine that were found add to value: 0 until any is.
     double machine[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+
+    // Of a force recording how fast its features change with time (recordings/lateness.h): N m/s
+    // and N/s at rig scale; zeros: not told, as of a machine, whose free air tells what is late.
+    double rate[DIG_FEATURES];
 
     bool   pitch_known; // recorded while it was dug
     double pitch_rad;   // of the machine, mean over the dig

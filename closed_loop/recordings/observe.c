@@ -1,6 +1,7 @@
 #include "closed_loop/recordings/observe.h"
 
 #include "closed_loop/recordings/alignment.h"
+#include "closed_loop/recordings/lateness.h"
 #include "closed_loop/recordings/path_depth.h"
 #include "closed_loop/recordings/path_match.h"
 #include "closed_loop/recordings/reading_noise.h"
@@ -249,6 +250,7 @@ static enum dig_status observe(const struct dig_curve_set *const set,
             "the moment of the whole dig",
             half_s);
     }
+    dig_lateness_rate(&dug, set->tooth_m, &o, o.rate);
     *observed = o;
     return DIG_OK;
 }

@@ -22,8 +22,8 @@ size_t dig_search_rivals(const struct dig_whitened_digs *const batch,
     size_t rivals = 0;
     for (int e = 0; e < DIG_EFFECTS; e++) {
         const enum dig_effect_id effect = (enum dig_effect_id)e;
-        if (!dig_effect_is_of_machine(effect) && effect != DIG_EFFECT_UNLISTED &&
-            rivals < DIG_RIVALS_MAX && dig_hypothesis_possible(batch, effect)) {
+        if (effect != DIG_EFFECT_UNLISTED && rivals < DIG_RIVALS_MAX &&
+            dig_hypothesis_possible(batch, effect)) {
             single[rivals++] = (struct dig_hypothesis){ .effects = 1, .effect = { effect } };
         }
     }

@@ -42,7 +42,7 @@ struct dig_search {
     struct dig_candidate_set alike;
 };
 
-/// Lists the single effects of the soil that the digs can tell; how many.
+/// Lists the single effects that the digs can tell; how many.
 size_t dig_search_rivals(const struct dig_whitened_digs *batch,
                          struct dig_hypothesis           single[DIG_RIVALS_MAX]);
 

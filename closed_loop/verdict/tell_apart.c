@@ -89,6 +89,21 @@ static const struct dig_fitted *rival_of(const struct dig_search *const s,
     return NULL;
 }
 
+// How fast a dig changes is known where one was recorded along its trajectory.
+static bool take_rate(const struct dig_trace_work *const w, struct dig_measured *const dig)
+{
+    for (size_t i = 0; i < w->digs; i++) {
+        const struct dig_measured *const like = &w->measured[i];
+        if (like->trajectory == dig->trajectory && like->pace > 0.0) {
+            for (size_t f = 0; f < DIG_FEATURES; f++) {
+                dig->rate[f] = like->rate[f] * dig->pace / like->pace;
+            }
+            return true;
+        }
+    }
+    return false;
+}
+
 // The plain dig comes first: what another way of digging does not change is told by it.
 static void tell_soil(const struct dig_trace_work *const w, struct dig_tell_apart *const tell)
 {
@@ -106,11 +121,14 @@ static void tell_soil(const struct dig_trace_work *const w, struct dig_tell_apar
     const struct dig_fitted *const b = rival_of(w->search, tell->effect[1]);
     for (size_t i = 0; a != NULL && b != NULL && i < sizeof way / sizeof way[0]; i++) {
         for (size_t k = 0; k < w->set->trajectories; k++) {
-            const struct dig_measured dig = { .trajectory = (int)k,
-                                              .order      = w->digs + way[i].more,
-                                              .pass       = way[i].pass,
-                                              .pace       = way[i].pace };
-            if (w->surface->known[k] && dig_soil_knows(w->soil, tell->effect[0], k) &&
+            struct dig_measured dig  = { .trajectory = (int)k,
+                                         .order      = w->digs + way[i].more,
+                                         .pass       = way[i].pass,
+                                         .pace       = way[i].pace };
+            const bool          late = dig_effect_is_of_machine(tell->effect[0]) ||
+                              dig_effect_is_of_machine(tell->effect[1]);
+            if ((take_rate(w, &dig) || !late) && w->surface->known[k] &&
+                dig_soil_knows(w->soil, tell->effect[0], k) &&
                 dig_soil_knows(w->soil, tell->effect[1], k)) {
                 offer(tell, false, apart(w, a, b, &dig), "a dig along ", w->set->trajectory[k].name,
                       way[i].how);
@@ -264,7 +282,7 @@ enum dig_status dig_tell_apart(const struct dig_trace_work *const w, struct dig_
     assert(w != NULL && trace != NULL);
     list_pairs(trace);
     for (size_t i = 0; i < trace->tells; i++) {
-        if (!dig_effect_is_of_machine(trace->tell[i].effect[0])) {
+        if (w->machine == NULL || !dig_effect_is_of_machine(trace->tell[i].effect[0])) {
             tell_soil(w, &trace->tell[i]);
         }
     }

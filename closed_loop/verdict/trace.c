@@ -4,6 +4,7 @@
 #include "closed_loop/accuracy/effect_size.h"
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/fit/posterior.h"
+#include "closed_loop/recordings/lateness.h"
 #include "closed_loop/verdict/residuals.h"
 #include "closed_loop/verdict/trace_work.h"
 
@@ -73,6 +74,7 @@ static enum dig_status check_digs(struct dig_trace_work *const w, struct dig_err
         w->fit[i]     = !w->holdout[i];
         fits += w->fit[i] ? 1 : 0;
     }
+    dig_lateness_share(w->digs, w->measured, w->fit);
     return fits >= 2 ? DIG_OK
                      : dig_error_set(error, DIG_EINVAL,
                                      "%zu identify and fit recordings, expected two or more: one "

@@ -137,11 +137,11 @@ void dig_trace_fill_candidates(const struct dig_trace_work *w, struct dig_trace 
 
 /// Fills tells for every pair of every set of a trace, as many as there is room for: which dig or
 /// which motion in free air would tell apart what a campaign's digs cannot, by how far the
-/// candidates as they were fitted differ along each, in units of its noise. Effects of the soil are
-/// compared along the table's trajectories, dug as they are, at twice the pace, where one was dug
-/// before and by a tooth that has dug ten more; effects of the machine (w->machine not NULL) in
-/// motions in free air (closed_loop/verdict/air_motion.h) and in the digs that were recorded.
-/// DIG_ENOMEM.
+/// candidates as they were fitted differ along each, in units of its noise. Effects of the soil,
+/// and forces that are late, are compared along the table's trajectories, dug as they are, at twice
+/// the pace, where one was dug before and by a tooth that has dug ten more; effects of the machine
+/// (w->machine not NULL) in motions in free air (closed_loop/verdict/air_motion.h) and in the
+/// digs that were recorded. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_tell_apart(const struct dig_trace_work *w,
                                               struct dig_trace            *trace);
 

@@ -79,7 +79,8 @@ struct dig_effect {
     bool   unlike_sides;          // magnitudes below absent are of another thing than those above
     bool   contrasted;            // what templates add is multiplied by parameter 1
     double likeness; // 1 sigma of what a template may differ by, as a share of itself; 0: usual
-    double reach;    // without templates: the largest parameter 0 that a trace tries
+    double reach;    // without templates: the largest parameter 0 that a trace tries; of the
+                     // machine: by force recordings, which have no free air, 0: none
 
     /// What is added without a bed, as a share of the plain curve, in a dig of that share, where
     /// the tooth has that speed over the mean of all trajectories. NULL: nothing.

@@ -71,11 +71,17 @@ static void count_digs(const size_t digs, struct dig_model_effect *const effect)
     }
 }
 
+// A force sensor stays with its recordings: the gravel is told without it, and no machine has it.
+static bool is_for_model(const struct dig_trace *const trace, const bool machine, const size_t e)
+{
+    return trace->applied && (machine || !dig_effect_is_of_machine(trace->effect[e].effect));
+}
+
 // Writes the model file that digsightd loads, with the files it needs. What the trace named and did
 // not apply is told, and no part of the model.
 static enum dig_status save_model(const struct digloop_job *const job, const char *const effects,
-                                  const struct dig_trace *const trace,
-                                  struct dig_error *const       error)
+                                  const bool machine, const struct dig_trace *const trace,
+                                  struct dig_error *const error)
 {
     struct dig_model *const model = calloc(1, sizeof *model);
     if (model == NULL) {
@@ -90,14 +96,13 @@ static enum dig_status save_model(const struct digloop_job *const job, const cha
     model->noise_floor  = trace->noise_floor;
     model->error_before = trace->before.value;
     model->error_after  = trace->after.value;
-    model->effects      = trace->applied ? trace->effects : 0;
-    model->not_applied  = trace->effects - model->effects;
     (void)snprintf(model->provenance, sizeof model->provenance, "digloop %s trace %.200s",
                    DIG_VERSION, job->options->recording[0]);
     for (size_t e = 0; e < trace->effects; e++) {
-        struct dig_model_effect *const to =
-            trace->applied ? &model->effect[e] : &model->left_out[e];
-        *to = trace->effect[e];
+        struct dig_model_effect *const to = is_for_model(trace, machine, e)
+                                                ? &model->effect[model->effects++]
+                                                : &model->left_out[model->not_applied++];
+        *to                               = trace->effect[e];
         count_digs(trace->judged.digs, to);
     }
     model->unlisted              = trace->applied ? trace->unlisted : NULL; // the trace keeps it
@@ -127,7 +132,7 @@ static enum dig_status write_results(const struct digloop_job *const job, const 
         status = dig_out_end(&out, dig_trace_html(trace, &subject, out.file, error), error);
     }
     if (status == DIG_OK && options->add != NULL) {
-        status = save_model(job, effects, trace, error);
+        status = save_model(job, effects, campaign->machine != NULL, trace, error);
     }
     // Where programs are to read the result, people read on standard error.
     const bool for_program =
