@@ -1,5 +1,6 @@
 #include "closed_loop/verdict/trace.h"
 
+#include "closed_loop/recordings/lateness.h"
 #include "closed_loop/verdict/residuals.h"
 
 #include "tests/closed_loop/world_fixture.h"
@@ -74,6 +75,62 @@ TEST(adding_the_effect_makes_the_holdout_better)
     assert_true(trace.after.value < 2.0 * trace.noise_floor);
     assert_true(isnan(trace.residual[DIG_PART_AIR]));
     assert_true(trace.candidate[0].as.effect == DIG_EFFECT_LAYERING);
+}
+
+// A force sensor's filter, over the dig's own time.
+static void lag(const double lag_s, struct dig_measured *const dig)
+{
+    const struct dig_trajectory *const t       = &world.set->trajectory[dig->trajectory];
+    const double                       tooth_m = world.set->tooth_m;
+    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        double before_s = 0.0;
+        double read     = dig->value[c][0];
+        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+            const double at_s =
+                dig_trajectory_time_s(t, tooth_m, (double)k / (DIG_CURVE_POINTS - 1)) / dig->pace;
+            read += (dig->value[c][k] - read) * (1.0 - exp(-(at_s - before_s) / lag_s));
+            dig->value[c][k] = read;
+            before_s         = at_s;
+        }
+    }
+    dig_lateness_rate(t, tooth_m, dig, dig->rate);
+}
+
+TEST(forces_that_lag_are_late_and_no_soil)
+{
+    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+    for (uint64_t seed = 41; seed < 44; seed++) {
+        dig_campaign(0, DIG_EFFECT_COHESION, 0.0, seed);
+        for (size_t i = 0; i < DIGS; i++) {
+            lag(0.1, &measured[i]);
+        }
+        trace_campaign();
+        assert_int_equal(trace.effects, 1);
+        assert_int_equal(trace.effect[0].effect, DIG_EFFECT_SENSOR_DELAY);
+        assert_string_equal(trace.effect[0].parameter[0].name, "delay_s");
+        assert_close(trace.effect[0].parameter[0].value, 0.1, 0.02);
+        assert_true(trace.effect[0].parameter[0].high - trace.effect[0].parameter[0].low < 0.05);
+        for (int a = 0; a < DIG_AXES; a++) {
+            assert_true(trace.low.value[a] <= gravel.value[a] &&
+                        gravel.value[a] <= trace.high.value[a]);
+        }
+        assert_true(trace.after.value < trace.before.value);
+    }
+}
+
+TEST(nothing_is_late_in_forces_that_are_not)
+{
+    dig_campaign(0, DIG_EFFECT_COHESION, 0.0, 45);
+    for (size_t i = 0; i < DIGS; i++) {
+        lag(1e-6, &measured[i]);
+    }
+    trace_campaign();
+    assert_int_equal(trace.effects, 0);
+    bool asked = false;
+    for (size_t i = 0; i < trace.candidates; i++) {
+        asked = asked || trace.candidate[i].as.effect == DIG_EFFECT_SENSOR_DELAY;
+    }
+    assert_true(asked);
 }
 
 // Of two holdouts: the root of the mean square of their own errors, as near as they are of one

@@ -116,6 +116,26 @@ trace noisy_obstacle
 check "a rock in the way is named beside noise" [ "$(verdict noisy_obstacle)" = '"obstacle"' ]
 data=$plain
 
+# By a force sensor whose filter lags, no soil is named.
+lagging() { # GRAVEL SECONDS: its beds, as lagging_GRAVEL into $work/lagging
+    mkdir -p "$work/lagging"
+    for dig in "$data/${1}"_seed?__*.csv; do
+        awk -F, -v OFS=, -v lag="$2" '
+            /^t_s/ { for (i = 1; i <= NF; i++) if ($i ~ /^(Fx_N|Fz_N|My_Nm)$/) at[i] = 1 }
+            /^[0-9]/ { for (i in at) $i = read[i] += ($i - read[i]) * (began ? 1 - exp((before - $1) / lag) : 1); before = $1; began = 1 }
+            { print }' "$dig" >"$work/lagging/lagging_$(basename "$dig")"
+    done
+}
+for gravel in mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200; do
+    lagging $gravel .1
+    data=$work/lagging trace lagging_$gravel --add "$work/lagging.model"
+    check "$gravel by a sensor that lags: sensor_delay" [ "$(verdict lagging_$gravel)" = '"sensor_delay"' ]
+    check "... of .1 s, within its interval" within .1 "$(number lagging_$gravel delay_s low)" "$(number lagging_$gravel delay_s high)"
+    check "... of a gravel of its density, within its interval" within "${gravel#*rho}" \
+        "$(number lagging_$gravel density_kgpm3 low)" "$(number lagging_$gravel density_kgpm3 high)"
+    check "... and no machine is corrected by it" eval 'tr -d " \n" <"$work/lagging.model" | grep -q "\"effects\":\[\]"'
+done
+
 # A bucket of friction .15 in gravel of .6; the table's is as rough as the gravel.
 data=$PWD/tests/data/liggghts_bucket
 smooth=mu0.6_mur0.4_rho2500_bucket0.15
