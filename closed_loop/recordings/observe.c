@@ -5,6 +5,7 @@
 #include "closed_loop/recordings/path_depth.h"
 #include "closed_loop/recordings/path_match.h"
 #include "closed_loop/recordings/reading_noise.h"
+#include "closed_loop/recordings/steady_path.h"
 #include "core/entry_set.h"
 #include "core/units.h"
 #include "estimator/approach/approach_response.h"
@@ -265,15 +266,23 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
         return dig_error_set(error, DIG_EINVAL, "the recording has %zu rows, expected 2 or more",
                              recording->rows);
     }
-    const size_t  n      = recording->rows + 2;
-    double *const memory = calloc(6 * n, sizeof *memory);
-    if (memory == NULL) {
+    const size_t                n      = recording->rows + 2;
+    double *const               memory = calloc(6 * n, sizeof *memory);
+    struct dig_force_row *const row    = calloc(2 * n, sizeof *row);
+    if (memory == NULL || row == NULL) {
+        free(memory);
+        free(row);
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     const struct columns columns = { recording->rows, memory,         memory + n,    memory + 2 * n,
                                      memory + 3 * n,  memory + 4 * n, memory + 5 * n };
-    const enum dig_status status = observe(set, recording, &columns, as_dug, observed, error);
+    struct dig_recording steady  = { recording->rows, row };
+    memcpy(row, recording->row, recording->rows * sizeof *row);
+    dig_steady_path(&steady, set->tooth_m, row + n, columns.raw);
+
+    const enum dig_status status = observe(set, &steady, &columns, as_dug, observed, error);
     free(memory);
+    free(row);
     return status;
 }
 

@@ -113,6 +113,41 @@ TEST(a_fast_dig_is_read_as_the_tables)
     }
 }
 
+// However roughly its poses are read, a dig is recognised and stands where it was.
+TEST(a_path_in_steps_or_with_noise_is_read_as_an_exact_one)
+{
+    const struct dig_curve_set set       = two_digs();
+    static const double        step_m[]  = { 0.0, 0.002 };
+    static const double        noise_m[] = { 0.0004, 0.0 };
+    uint64_t                   chance    = 3;
+    struct dig_measured        plain;
+    struct dig_measured        o;
+    for (int t = 0; t < 2; t++) {
+        struct dig_recording r = drive(&set.trajectory[t], 1.0, slow_wave);
+        assert_int_equal(dig_observe_dig(&set, &r, &plain, NULL), DIG_OK);
+        dig_recording_finish(&r);
+        for (int rough = 0; rough < 2; rough++) {
+            r = drive(&set.trajectory[t], 1.0, slow_wave);
+            for (size_t i = 0; i < r.rows; i++) {
+                double *const pin_m[2] = { &r.row[i].pin_x_m, &r.row[i].pin_z_m };
+                for (int axis = 0; axis < 2; axis++) {
+                    *pin_m[axis] += noise_m[rough] * dig_chance_normal(&chance);
+                    if (step_m[rough] > 0.0) {
+                        *pin_m[axis] = step_m[rough] * round(*pin_m[axis] / step_m[rough]);
+                    }
+                }
+            }
+            assert_int_equal(dig_observe_dig(&set, &r, &o, NULL), DIG_OK);
+            assert_int_equal(o.trajectory, t);
+            assert_close(o.pace, 1.0, 0.03);
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                assert_close(o.value[0][k], plain.value[0][k], 0.04);
+            }
+            dig_recording_finish(&r);
+        }
+    }
+}
+
 // The table of two digs, the first of which was made deeper and with the bucket turned, too; with
 // depths in metres of the trajectory's own.
 static struct dig_curve_set dug_otherwise(struct dig_entry_set *const others)
