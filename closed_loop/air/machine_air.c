@@ -1,6 +1,7 @@
 #include "closed_loop/air/machine_air.h"
 
 #include "closed_loop/air/machine_stand.h"
+#include "closed_loop/air/machine_turn.h"
 #include "core/linkage.h"
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/dynamics.h"
@@ -98,11 +99,12 @@ static void fill_means(struct dig_air_segment *const segment, const struct dig_a
 // Sigma of a block of one joint, or not positive where the joint cannot be told.
 static double block_sigma_N(const struct dig_machine *const machine,
                             const struct dig_air_point point[], const size_t points,
-                            const int joint, const double push_N, const double per_point)
+                            const int joint, const double push_N, const double per_point,
+                            const double turn[DIG_JOINTS])
 {
-    static const struct dig_correction none = { .delay_s = 0.0 };
-    double                             slow = 0.0;
-    double                             turn = 0.0;
+    static const struct dig_correction none    = { .delay_s = 0.0 };
+    double                             slow    = 0.0;
+    double                             turn_N2 = 0.0;
     for (size_t p = 0; p < points; p++) {
         struct dig_readings readings;
         if (dig_readings_take(machine, &none, &point[p].sample, &point[p].rates, &readings) !=
@@ -121,23 +123,21 @@ static double block_sigma_N(const struct dig_machine *const machine,
         dig_dynamics_inertia_kgm2(machine, &front, inertia_kgm2);
         slow = readings.push[joint].slow_N;
         for (int k = 0; k < DIG_JOINTS; k++) {
-            turn += pow(inertia_kgm2[joint][k] / lever.arm_m, 2.0) / (double)points;
+            turn_N2 += pow(inertia_kgm2[joint][k] / lever.arm_m, 2.0) * turn[k] / (double)points;
         }
     }
-    // A block's mean acceleration is the difference of two speeds.
-    const double turn_radps2 =
-        fmin(point[0].rates.acceleration_sigma,
-             sqrt(2.0) * point[0].rates.velocity_sigma / (step_s * (double)points));
     const double white_N = push_N / sqrt(per_point * (double)points);
-    return hypot(hypot(white_N, slow), sqrt(turn) * turn_radps2);
+    return hypot(hypot(white_N, slow), sqrt(turn_N2));
 }
 
 static void add_rows(struct dig_air *const air, const size_t first, const size_t points,
                      const size_t segment, const double sigma_N[DIG_JOINTS], const double per_point)
 {
+    double turn[DIG_JOINTS];
+    dig_turn_variance(&air->machine, &air->point[first], points, turn);
     for (int j = 0; j < DIG_JOINTS; j++) {
-        const double sigma =
-            block_sigma_N(&air->machine, &air->point[first], points, j, sigma_N[j], per_point);
+        const double sigma = block_sigma_N(&air->machine, &air->point[first], points, j, sigma_N[j],
+                                           per_point, turn);
         if (sigma > 0.0) {
             air->row[air->rows++] =
                 (struct dig_air_row){ segment, (enum dig_joint)j, first, points, sigma, 1.0 };

@@ -118,6 +118,8 @@ struct dig_rates dig_rates_between(const struct dig_rates *const a, const struct
                                    const double f)
 {
     struct dig_rates out = *a;
+    out.velocity_sigma += f * (b->velocity_sigma - a->velocity_sigma);
+    out.acceleration_sigma += f * (b->acceleration_sigma - a->acceleration_sigma);
     for (int j = 0; j < DIG_JOINTS; j++) {
         out.velocity_radps[j] += f * (b->velocity_radps[j] - a->velocity_radps[j]);
         out.acceleration_radps2[j] += f * (b->acceleration_radps2[j] - a->acceleration_radps2[j]);

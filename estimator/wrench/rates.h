@@ -45,7 +45,7 @@ struct dig_rates dig_rates_step(struct dig_rates_filter *filter, int64_t time_ns
 void dig_rates_centred(size_t n, const double time_s[], const double joint_rad[], double half_s,
                        double sigma_rad, struct dig_rates rates[]);
 
-/// Interpolates rates between a and b, f from 0 to 1.
+/// Interpolates rates and sigmas between a and b, f from 0 to 1.
 struct dig_rates dig_rates_between(const struct dig_rates *a, const struct dig_rates *b, double f);
 
 #endif // DIG_ESTIMATOR_WRENCH_RATES_H
