@@ -169,13 +169,48 @@ static double size2_of_plain(struct dig_likelihood *const l, const size_t g, con
     return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
 }
 
-static double likeness_of(const struct dig_hypothesis *const hypothesis)
+static double likeness_of(const enum dig_effect_id effect)
 {
-    double most = of_templates;
-    for (size_t e = 0; e < hypothesis->effects; e++) {
-        most = fmax(most, dig_effect_of(hypothesis->effect[e])->likeness);
+    return fmax(of_templates, dig_effect_of(effect)->likeness);
+}
+
+// How large what one of the effects adds to a group is, squared, in plain digs.
+static double size2_of_effect(const struct dig_likelihood *const l, const size_t g,
+                              const struct dig_plain *const at, const double x[], const size_t e)
+{
+    const struct dig_hypothesis alone = { .effects = 1, .effect = { l->hypothesis->effect[e] } };
+    double                      number[DIG_HYPOTHESIS_NUMBERS];
+    double                      added[DIG_FEATURES];
+    double                      sum = 0.0;
+    memcpy(number, x, DIG_AXES * sizeof number[0]);
+    number[DIG_AT_U(0)]        = x[DIG_AT_U(e)];
+    number[DIG_AT_CONTRAST(0)] = x[DIG_AT_CONTRAST(e)];
+    (void)dig_forward_added(l->batch, g, at, &alone, number, added);
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        sum += pow(added[f] / at->amplitude[f / DIG_FEATURE_BINS], 2.0);
     }
-    return most;
+    return sum;
+}
+
+// Of all effects together each has a say by its size: one that adds nothing must not make room for
+// what the others leave.
+static double likeness_of_all(const struct dig_likelihood *const l, const size_t g,
+                              const struct dig_plain *const at, const double x[])
+{
+    const struct dig_hypothesis *const h = l->hypothesis;
+    const double one  = h->effects > 0 ? likeness_of(h->effect[0]) : of_templates;
+    bool         same = true;
+    double       sum  = 0.0;
+    double       all  = 0.0;
+    for (size_t e = 1; e < h->effects; e++) {
+        same = same && fabs(likeness_of(h->effect[e]) - one) <= 0.0;
+    }
+    for (size_t e = 0; e < h->effects && !same; e++) {
+        const double size2 = size2_of_effect(l, g, at, x, e);
+        sum += pow(likeness_of(h->effect[e]), 2.0) * size2;
+        all += size2;
+    }
+    return all > 0.0 ? sqrt(sum / all) : one;
 }
 
 static void weigh_steps(struct dig_likelihood *const l)
@@ -205,7 +240,6 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
         return;
     }
     memcpy(l->weighed_at, x, l->numbers * sizeof x[0]);
-    const double unlike   = likeness_of(l->hypothesis);
     const double unlisted = l->hypothesis->unlisted;
     for (size_t g = 0; g < l->batch->groups; g++) {
         const struct dig_whitened_digs_group *const group = &l->batch->group[g];
@@ -214,6 +248,7 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
         const double                                size2 = size2_of_plain(l, g, x, &factor);
         const struct dig_plain *const               at    = plain_at(l, g, x);
         double                                      added[DIG_FEATURES];
+        const double                                unlike = likeness_of_all(l, g, at, x);
         const double templates = dig_forward_added(l->batch, g, at, l->hypothesis, x, added);
         error->even            = rough + group->repeats + group->added_noise + size2 * templates +
                       size2 * factor *

@@ -182,6 +182,31 @@ TEST(a_fit_ends_where_the_squares_it_tells_are_least)
     }
 }
 
+// A rock's template may be farther off than others'.
+TEST(a_rock_of_no_size_makes_no_room_for_what_is_beside_it)
+{
+    static struct dig_whitened_digs batch;
+    const struct dig_gravel         gravel = { { 0.6, 0.55, 2500 } };
+    dig(&gravel, 1.0, 10);
+    batch_digs(DIGS, measured, &gravel, &batch);
+    struct dig_fitted one   = { .hypothesis = { .effects = 1, .effect = { DIG_EFFECT_LAYERING } } };
+    one.number[DIG_AT_U(0)] = 0.5;
+    one.number[DIG_AT_CONTRAST(0)] = 1.0;
+    struct dig_fitted two          = one;
+    two.hypothesis.effects         = 2;
+    two.hypothesis.effect[1]       = DIG_EFFECT_OBSTACLE;
+    two.number[DIG_AT_CONTRAST(1)] = 1.0;
+    struct dig_common_error alone[DIG_TRAJECTORY_MAX], beside[DIG_TRAJECTORY_MAX];
+    dig_hypothesis_errors(&batch, &one, alone);
+    dig_hypothesis_errors(&batch, &two, beside);
+    double most = 0.0;
+    for (size_t f = 0; f < DIG_FEATURES; f++) {
+        most = fmax(most, fabs(alone[0].size[1][f]));
+        assert_close(beside[0].size[1][f], alone[0].size[1][f], 1e-12);
+    }
+    assert_true(most > 0.0);
+}
+
 // Of tables whose frictions begin near nothing and far from it.
 TEST(a_gravel_outside_the_grid_has_no_less_than_no_friction)
 {
