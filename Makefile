@@ -354,11 +354,10 @@ tidy_flags := $(foreach word,-analyzer-config max-nodes=75000,--extra-arg=-Xclan
 lint-tidy: lint-tidy-upper lint-tidy-lower
 lint-tidy-upper: tidy_src = $(filter closed_loop/% firmware_host/%,$(all_src))
 lint-tidy-lower: tidy_src = $(filter-out closed_loop/% firmware_host/%,$(all_src))
-# Several files a process: its start is a fifth of the time that a file takes.
-lint-tidy-upper lint-tidy-lower: export tidy_cc = $(STD) $(lint_flags)
+# A file a process: in the second of several the analyzer takes every va_list for one that was not begun.
 lint-tidy-upper lint-tidy-lower: $(BUILD)/messages/.made
-	$(Q)printf '%s\n' $(tidy_src) | xargs -r -P $(JOBS) -n 8 \
-	    sh -c 'eval "clang-tidy --quiet $(tidy_flags) $$* -- $$tidy_cc" 2>/dev/null' sh
+	$(Q)printf '%s\n' $(tidy_src) | xargs -P $(JOBS) -I{} \
+	    clang-tidy --quiet $(tidy_flags) {} -- $(STD) $(lint_flags) 2>/dev/null
 
 layers: all ## Fail on an include or a circle of calls that points the wrong way
 	$(Q)./scripts/check_layers.sh $(BUILD)
