@@ -69,8 +69,8 @@ struct dig_check_item {
 struct dig_check_curves {
     size_t  points;
     double *time_s;
-    double *drive_N, *load_N;               // as the columns and the file say
-    double *mended_drive_N, *mended_load_N; // read as found best, with the causes named taken off
+    double *drive_N, *load_N;               // one allocation; as the columns and the file say
+    double *mended_drive_N, *mended_load_N; // likewise; read as found best, causes named taken off
 };
 
 /// Free with dig_machine_air_check_finish().

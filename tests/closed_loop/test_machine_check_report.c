@@ -47,10 +47,9 @@ static int make(void **state)
         add((enum dig_check_question)q, DIG_JOINT_BUCKET, DIG_CHECK_OK);
         add((enum dig_check_question)q, DIG_JOINT_BUCKET, DIG_CHECK_WRONG);
     }
-    double *const curve[] = { malloc(3 * POINTS * sizeof(double)),
-                              malloc(3 * POINTS * sizeof(double)),
-                              malloc(3 * POINTS * sizeof(double)),
-                              malloc(3 * POINTS * sizeof(double)) };
+    double *const read    = malloc(6 * POINTS * sizeof(double));
+    double *const mended  = malloc(6 * POINTS * sizeof(double));
+    double *const curve[] = { read, read + 3 * POINTS, mended, mended + 3 * POINTS };
     check.curves          = (struct dig_check_curves){ POINTS,   malloc(POINTS * sizeof(double)),
                                                        curve[0], curve[1],
                                                        curve[2], curve[3] };
