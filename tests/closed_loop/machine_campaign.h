@@ -354,4 +354,40 @@ static inline void end(struct campaign *const c)
     free(c);
 }
 
+// Under a sanitizer one seed tells as much as several, and none where another test has the lines.
+static inline uint64_t most(const uint64_t quick, const uint64_t all)
+{
+    return test_is_quick() ? quick : all;
+}
+
+// The only effect found is this one; its parameter has this value within its interval.
+static inline void expect_found(const struct campaign *const c, const enum dig_effect_id effect,
+                                const char *const parameter, const double value)
+{
+    assert_true(c->finding.significant && !c->finding.unexplained);
+    assert_int_equal(c->finding.effects, 1);
+    const struct dig_model_effect *const found = &c->finding.effect[0];
+    assert_int_equal(found->effect, effect);
+    // Digs are drawn anew: a third of the draws lack the first, which alone carries no payload.
+    assert_true(found->probability > 0.6);
+    for (size_t p = 0; parameter != NULL && p < found->parameters; p++) {
+        if (strcmp(found->parameter[p].name, parameter) == 0) {
+            const double wide = found->parameter[p].high - found->parameter[p].low;
+            assert_close(found->parameter[p].value, value, wide);
+            return;
+        }
+    }
+    assert_null(parameter);
+}
+
+static inline void assert_nothing_found(const struct campaign *const c)
+{
+    for (size_t i = 0; i < c->finding.candidates; i++) {
+        print_message("%s %.1f, ", dig_effect_name(c->finding.candidate[i].as.effect),
+                      c->finding.candidate[i].log_evidence);
+    }
+    print_message("air %.3f\n", c->finding.residual_air);
+    assert_false(c->finding.significant);
+}
+
 #endif // DIG_TESTS_CLOSED_LOOP_MACHINE_CAMPAIGN_H
