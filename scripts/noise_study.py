@@ -7,7 +7,7 @@ A campaign is what a ZX200 records of two beds of a gravel, along simpleA and ac
 becomes e times less alike in .05 to .5 s, 1 to 5 % of the range that the pressure has in that dig, and at most a third of its
 median. So many (12) are made of each KIND: plain; quiet, without noise; offset, the bucket's head side reads .5 MPa more; weight,
 its bucket is 120 kg heavier than its file; slope, one bed whose surface rises by 8 degrees. Prints a line a campaign, then how
-often what is there was named alone, and how many intervals of the gravel miss. Two seconds a campaign.
+often what is there was named, alone or in a set, and nothing beside it, and how many intervals of the gravel miss. Two seconds a campaign.
 """
 import json
 import math
