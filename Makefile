@@ -362,7 +362,7 @@ lint-tidy-upper lint-tidy-lower: $(BUILD)/messages/.made
 layers: all ## Fail on an include or a circle of calls that points the wrong way
 	$(Q)./scripts/check_layers.sh $(BUILD)
 
-docs-check: ## Fail where a document names a file, heading, test or target that is not there
+docs-check: ## Fail where a document names a file, heading, test, target or figure that is not there
 	$(Q)./scripts/check_docs.sh
 
 format: ## Rewrite the sources with clang-format

@@ -1,7 +1,8 @@
 #!/bin/bash
 # scripts/check_docs.sh [FILE.md…]: fails where a document names a file, a heading, a test or a make target
 # that does not exist, in a link [text](file#heading) or in `backticks`; without a file named, for all of them
-# but the changelog, which tells of files that are gone, and where a picture of a floor is not of this tree.
+# but the changelog, which tells of files that are gone, and where a picture of a floor is not of this tree or a figure
+# of docs/figures.toml not in its document.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -95,5 +96,6 @@ if [ "$given" = 0 ]; then
     for drawn in "$work"/floor*.svg; do
         cmp -s "$drawn" "docs/pictures/${drawn##*/}" || { echo "docs/pictures/${drawn##*/}: out of date, make floors"; bad=1; }
     done
+    scripts/release_check.py --ties || bad=1
 fi
 exit $bad

@@ -31,6 +31,15 @@ check "a row without a command fails" eval 'judged 1 && grep -q "^| peak | 7 N |
 figure 'peak \| 7 N' 'echo as said' 'as said' 'cost = "long"'
 check "a long one is left out unless asked for" eval 'judged 0 && grep -q "not run" "$work/page.md"'
 check "... and held where its words are printed" eval 'judged 0 --all && [ "$(grep -c "| ok |" "$work/page.md")" = 3 ]'
+check "without running, a document and its figures agree" eval 'rm -f "$work/page.md"; judged 0 --ties && [ ! -e "$work/page.md" ]'
+doc '| peak | 8 N |
+'
+check "... and do not, and that is told" eval 'judged 1 --ties && grep -q "peak .*not in the document" "$work/out" && grep -q "^| peak | 8 N |" "$work/out"'
+doc '| peak | 7 N |
+| | 9 N |
+'
+sed -i 's/peak .| 7 N/peak .| 7 N .|\\n.| .| 9 N/' "$work/figures.toml"
+check "a figure of two rows is one for both" judged 0 --ties
 check "what was printed is kept, and read again" eval 'sed -i "s/as said/otherwise/" "$work"/logs/*.log && judged 1 --all --from "$work/logs"'
 figure 'x' 'true' '('
 check "a wrong expression is named, with its figure and key" eval 'judged 2 && grep -q "figure 4: key .printed." "$work/err"'
