@@ -38,7 +38,7 @@ check "... and do not, and that is told" eval 'judged 1 --ties && grep -q "peak 
 doc '| peak | 7 N |
 | | 9 N |
 '
-sed -i 's/peak .| 7 N/peak .| 7 N .|\\n.| .| 9 N/' "$work/figures.toml"
+sed -i 's#peak .| 7 N#peak [|] 7 N [|]\\n[|] [|] 9 N#' "$work/figures.toml"
 check "a figure of two rows is one for both" judged 0 --ties
 check "what was printed is kept, and read again" eval 'sed -i "s/as said/otherwise/" "$work"/logs/*.log && judged 1 --all --from "$work/logs"'
 figure 'x' 'true' '('
