@@ -41,7 +41,7 @@ enum dig_sensing { DIG_SENSING_CYLINDERS, DIG_SENSING_SENSOR };
 
 struct dig_sample {
     int64_t time_ns;            // monotonic, of the youngest signal; any epoch
-    double  value[DIG_SIGNALS]; // SI, machine frames of CONTRACT (docs/numerics.md)
+    double  value[DIG_SIGNALS]; // SI, in the machine's frames (docs/architecture.md)
     bool    valid[DIG_SIGNALS]; // false: missing, not available or refused; value is then 0
 };
 

@@ -14,7 +14,7 @@
 double dig_decision_chance_of_worse(const struct dig_judged  *judged,
                                     const struct dig_scatter *scatter);
 
-/// Whether CONTRACT's error of the moment after is below that before, over the digs fitted to.
+/// Whether the moment's error (docs/numerics.md) after is below that before, over the fitted digs.
 bool dig_decision_brings_nearer(const struct dig_judged *judged, const bool fit[]);
 
 #endif // DIG_CLOSED_LOOP_ACCURACY_DECISION_H

@@ -19,12 +19,12 @@ enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };
 const char *dig_part_name(enum dig_part part);
 
 /// One effect as it competed: refitted jointly with the gravel. Its probability is the share of
-/// bootstrap samples of digs in which it was chosen.
+/// bootstrap samples of digs in which it was chosen ("inclusion" of docs/formats/trace.md).
 struct dig_candidate {
     struct dig_model_effect as;
     double                  log_evidence; // - BIC / 2 less that of no effect
     double                  p_fit; // chance of a residual this large if this were the whole truth
-    double                  error; // of the fit digs with it, CONTRACT's metric
+    double                  error; // of the fitted digs' prediction with it (docs/numerics.md)
     enum dig_part           seen_in;
 };
 

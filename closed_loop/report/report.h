@@ -40,8 +40,8 @@ struct dig_report_run {
     double                distance; // of the simple dig's curve to the fitted one, relative
     struct dig_report_dig simple;
     struct dig_report_dig real;
-    double error;       // of the predicted dig, CONTRACT's metric, against the measured one
-    double noise_floor; // 1 sigma of what it would be if the model were complete
+    double                error; // of the predicted dig against the measured one (docs/numerics.md)
+    double                noise_floor; // 1 sigma of what it would be if the model were complete
 };
 
 struct dig_report {

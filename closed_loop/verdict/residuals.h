@@ -10,7 +10,7 @@
 #include "closed_loop/verdict/trace_work.h"
 
 /// Of one channel in one part of a dig; all NaN where nothing was measured. relative adds up in
-/// squares over the parts: of the moment the sum's root is CONTRACT's error of this dig.
+/// squares over the parts: of the moment the sum's root is this dig's error (docs/numerics.md).
 struct dig_residual {
     double rms; // N m or N
     double

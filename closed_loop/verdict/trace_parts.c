@@ -195,7 +195,7 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
     }
 }
 
-// CONTRACT's error of the digs fitted to, by one candidate.
+// Error of the prediction (docs/numerics.md) of the fitted digs by one candidate.
 static double fit_error(const struct dig_trace_work *const w, const struct dig_fitted *const fitted)
 {
     static const double no_sd[DIG_CURVE_POINTS] = { 0.0 };

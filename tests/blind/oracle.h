@@ -27,7 +27,7 @@ void blind_oracle_destroy(struct blind_oracle *oracle);
 struct blind_truth {
     double size[BLIND_EFFECTS_MAX];     // of what the soil shows, as above
     double size_air[BLIND_EFFECTS_MAX]; // of what free air shows: see struct blind_dig, rss of digs
-    double error; // of the held out digs, CONTRACT's metric, with the effects known
+    double error; // of the held out digs, docs/numerics.md, with the effects known
 };
 
 /// DIG_ENOMATCH: the table has no gravel for it.

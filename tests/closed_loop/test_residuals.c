@@ -58,7 +58,7 @@ TEST(sigmas_are_told_apart_by_part_and_by_before_and_after)
     assert_close(r[DIG_PART_LIFTED][0].rms, 0.1, 1e-9);
 }
 
-// CONTRACT's error is summed over rig time on another grid.
+// A prediction's error is summed over rig time on another grid.
 TEST(the_parts_add_up_to_the_error_of_the_dig)
 {
     static const double off[][2] = { { 0.5, 2.0 }, { 3.0, 0.1 } };
