@@ -27,9 +27,9 @@ struct dig_contact_springs dig_contact_springs(const struct dig_material *materi
 double dig_contact_step_s(const struct dig_material *material, enum dig_normal_law normal,
                           double density_kgpm3);
 
-/// How stiff contacts under the gravel's weight are goes with this power of its density: 1 where
-/// Young's modulus goes with it; else 1/5 by Hooke's spring, which a heavy grain's impact stiffens,
-/// and 1/3 by Hertz's.
+/// Exponent p of the stiffness of contacts under the gravel's weight, proportional to density^p: 1
+/// where Young's modulus is proportional to density; else 1/5 for Hooke's spring, which a heavy
+/// grain's impact stiffens, and 1/3 for Hertz's.
 double dig_contact_stiffness_power(const struct dig_material *material, enum dig_normal_law normal);
 
 #endif // DIG_CORE_CONTACT_H

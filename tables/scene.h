@@ -1,4 +1,4 @@
-// The scene a table was made in, out of the text its hash is of.
+// The scene of a table, read from the canonical text whose hash the table holds.
 
 #ifndef DIG_TABLES_SCENE_H
 #define DIG_TABLES_SCENE_H

@@ -1,16 +1,15 @@
-// Whether what was found is worth taking off a prediction: a change that is small beside the
-// scatter of one dig makes the next dig's error worse nearly as often as better, even where the
-// change is right.
+// Decides whether to apply a correction. One that is small beside the scatter of one dig makes the
+// next dig's error worse nearly as often as better, even where it is right.
 
 #ifndef DIG_CLOSED_LOOP_ACCURACY_DECISION_H
 #define DIG_CLOSED_LOOP_ACCURACY_DECISION_H
 
 #include "closed_loop/accuracy/judge.h"
 
-/// The chance that the curves after are further from the next dig than those before, were they
-/// exactly its mean: a mean over these digs. A change d of the moment makes a dig that scatters by
-/// e worse where 2 <d, e> < -<d, d>, products over rig time; e is normal, as large as curves'
-/// before.sd and correlated from bin to bin as the scatter is. 1/2 where nothing changes.
+/// Chance, 0 … 1, that the curves after are farther from the next dig than those before, if they
+/// are exactly its mean: averaged over these digs. A correction d of the moment makes a dig that
+/// scatters by e worse where 2 <d, e> < -<d, d>, products over rig time. e is normal, as large as
+/// the curves' before.sd and correlated from bin to bin as the scatter is. 1/2 where d is 0.
 double dig_decision_chance_of_worse(const struct dig_judged  *judged,
                                     const struct dig_scatter *scatter);
 

@@ -1,6 +1,6 @@
-// Free air of several machine recordings as equations: what is left of each joint's balance, in
-// newtons at its drive's rod, averaged over blocks of time. 0 but for noise when the machine is as
-// it is taken to be.
+// Free air of several machine recordings as equations: the residual of each joint's balance, in
+// newtons at its drive's rod, averaged over blocks of time. 0 but for noise if the machine is
+// modelled right.
 //
 // Accelerations from angles are means over a kernel (1 - u^2)^2 of +-0.12 s; pressures and angles
 // are averaged over the same kernel first, so that inertia and drive are of one time.
@@ -18,7 +18,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// The kernel's half is the rates'; points of the air are so far apart.
+/// Half width of the kernel, which is that of the rates; distance of the points of the air.
 #define DIG_AIR_KERNEL_HALF_s 0.12
 #define DIG_AIR_STEP_s        0.025
 
@@ -39,33 +39,33 @@ struct dig_air_row {
     double         alone;         // of that what it scatters by; less than 1 where noise lasts
 };
 
-/// What a machine's file may have wrong within its tolerance, a number each: by how much more the
-/// machine is pitched than it says, and of each link mass and moment as in struct dig_added_mass.
+/// Errors of a machine's file within its tolerance, true less file, a number each: the machine's
+/// pitch, and of each link mass and first moment as in struct dig_added_mass.
 enum dig_file_error {
     DIG_FILE_LEVEL_rad,
     DIG_FILE_LINKS, // kg, x and y in kgm; the boom's, the arm's, the bucket's
     DIG_FILE_ERRORS = DIG_FILE_LINKS + 3 * DIG_JOINTS
 };
 
-/// 1 sigma of the level: a machine that does not say how it is pitched stands so level.
+/// 1 sigma of the pitch of a machine that records none.
 #define DIG_FILE_LEVEL_SIGMA_rad (0.5 * DIG_RAD_PER_DEG)
 
-/// Adds such numbers to a correction.
+/// Adds errors of the file to a correction.
 void dig_file_correct(const double file[DIG_FILE_ERRORS], struct dig_correction *correction);
 
 /// The air before or after one dig.
 struct dig_air_segment {
     size_t dig; // its place among those given
     bool   after;
-    size_t first_point, points; // those beside the air tell angles alone
+    size_t first_point, points; // those beside the air give angles alone
     size_t first_row, rows;
     double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
 
-    // What the poses of its points were last asked about with.
+    // With which the poses of its points were last computed.
     struct dig_correction posed;
 };
 
-/// What of a point's balance pressures and friction have no part in.
+/// The part of a point's balance that does not depend on pressures and friction.
 struct dig_air_pose {
     bool   known;
     bool   lever_ok[DIG_JOINTS];
@@ -92,24 +92,25 @@ DIG_MUST_CHECK enum dig_status dig_air_make(const struct dig_machine *machine, s
 
 void dig_air_finish(struct dig_air *air);
 
-/// Calms the pressures: the chamber of a drive that reads less counts as its return side and reads
-/// its mean, the other what makes the corrected balance nothing. What a gain or a lever does is
-/// proportional to the pressure; taken from a noisy one it would explain that noise.
+/// Fills calm_Pa: of a drive's chambers the one with the lower pressure counts as the return side
+/// and gets its mean, the other the pressure that makes the corrected balance zero. The slope of a
+/// gain or a lever is proportional to pressure; taken from noisy pressures it would explain their
+/// noise.
 void dig_air_calm(struct dig_air *air, const struct dig_correction correction[]);
 
-/// What the drives push and what they would have to when the machine is corrected, N at the rods:
+/// Push of the drives, and the push that balances the corrected machine, N at the rods:
 /// drive_N[3 * point + joint] and load_N alike; NaN where a pressure or a lever is missing.
 void dig_air_forces(const struct dig_air *air, const struct dig_correction correction[],
                     double drive_N[], double load_N[]);
 
-/// What is left of every row in its sigmas when the machine is corrected. correction[segment].
-/// calm: of the calm pressures, as slopes are to be taken. Uses air's scratch.
+/// Residual of every row of the corrected machine, in its sigmas: rest[rows], correction[segments].
+/// calm: with the calm pressures, as slopes are taken. Uses air's scratch.
 void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[], bool calm,
                   double rest[]);
 
-/// How much more than what the correction says, either way, friction may take of every row whose
-/// drive stands or creeps, in its sigmas: all that is dry in it at a standstill, as a rod that
-/// rubbed and stopped may be held by that force or by less; nothing where it moves. Uses air's
+/// By how much friction may differ from the correction's, either way, in every row whose drive
+/// stands or creeps: held[rows], in the rows' sigmas. At a standstill it is all dry friction, as a
+/// rod that stopped may be held by that force or by less; where it moves it is 0. Uses air's
 /// scratch.
 void dig_air_held(const struct dig_air *air, const struct dig_correction correction[],
                   double held[]);

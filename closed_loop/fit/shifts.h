@@ -1,19 +1,20 @@
-// The table may have a dig at another place than its own: what a gravel beside this one would dig,
-// and what an effect would do at another gravel or magnitude. In 1 sigma of each, so that they are
-// terms of a covariance.
+// Shifts: the table may have a dig at a neighbouring gravel's place, or an effect at another
+// gravel's or magnitude. Each is 1 sigma, as a term of a covariance
+// (closed_loop/fit/common_error.h).
 
 #ifndef DIG_CLOSED_LOOP_FIT_SHIFTS_H
 #define DIG_CLOSED_LOOP_FIT_SHIFTS_H
 
 #include "closed_loop/fit/forward.h"
 
-/// Of the gravel; of all effects together by the gravel, and of each by its magnitude.
+/// One for each axis of the gravel, one for each axis of the effects together, and one for each
+/// effect's magnitude.
 #define DIG_SHIFTS_MAX (2 * DIG_AXES + DIG_HYPOTHESIS_EFFECTS)
 
 struct dig_shifts {
     size_t shifts;
     double of[DIG_SHIFTS_MAX][DIG_FEATURES]; // units of the table
-    // What the mean of so many beds and the surface differ by as other gravels do, beyond S.
+    // 1 sigma, beyond S, of the beds' mean and of the surface in the direction of each axis.
     double as_gravels[DIG_AXES][DIG_FEATURES];
 };
 
@@ -24,8 +25,8 @@ void dig_shifts_fill(const struct dig_whitened_digs *batch, size_t group,
                      const struct dig_plain *plain, const double added[DIG_FEATURES],
                      struct dig_shifts *shifts);
 
-/// 1 sigma of what all trajectories share: beside an effect of the soil, of a gravel's place and of
-/// the effects' u. A fit takes it for another gravel, so that nothing shows it.
+/// 1 sigma, beside an effect of the soil, of the error that all trajectories share: of the gravel's
+/// place and of the effects' u. A fit takes it for another gravel, so no residual shows it.
 void dig_shifts_common(const struct dig_whitened_digs *batch,
                        const struct dig_hypothesis *hypothesis, const double number[],
                        double sigma[DIG_HYPOTHESIS_NUMBERS]);

@@ -1,4 +1,4 @@
-// What is not of the soil and known but for some numbers: a machine as free air leaves it open.
+// What a machine that free air leaves partly undetermined adds to the digs, linear in z:
 //
 //   y(dig) = soil(dig) + sum over k of z[k] of[k](trajectory),    z ~ N(middle, 1)
 
@@ -15,12 +15,11 @@ struct dig_steps {
     double of[DIG_STEPS_MAX][DIG_TRAJECTORY_MAX][DIG_FEATURES]; // units of the table
 };
 
-/// Adds what z makes of the batch's steps to y of a group, in the batch's units. Without steps
-/// nothing.
+/// Adds sum z[k] of[k] to y of a group, whitened. Does nothing without steps.
 void dig_steps_add(const struct dig_whitened_digs *batch, const double z[], size_t group,
                    double y[DIG_FEATURES]);
 
-/// Takes what z makes of the batch's steps off its digs, which have none then.
+/// Subtracts sum z[k] of[k] from the batch's digs, which have no steps then.
 void dig_steps_settle(struct dig_whitened_digs *batch, const double z[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_STEPS_H

@@ -1,5 +1,5 @@
-// Free air made linear: how its equations change with every parameter of every effect of the
-// machine, around values the parameters have.
+// Free air linearised: the slopes of its equations by every parameter of every effect of the
+// machine, about the parameters' present values.
 //
 //   rest(theta) = rest + sum over columns of slope * (theta - at)      every row in its own sigmas
 //
@@ -17,8 +17,8 @@
 
 #define DIG_MACHINE_ALL_EFFECTS ((1U << DIG_MACHINE_EFFECTS) - 1U)
 
-/// The bit of what a file may have wrong besides (enum dig_file_error): those columns are of no
-/// effect of the catalogue, DIG_EFFECT_UNLISTED.
+/// The bit of the errors of the machine's file (enum dig_file_error). Their columns are of no
+/// effect of the catalogue: DIG_EFFECT_UNLISTED.
 #define DIG_LINES_OF_FILE (1U << DIG_EFFECT_UNLISTED)
 
 #define DIG_LINES_COLUMNS_MAX                                                                      \

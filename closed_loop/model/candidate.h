@@ -1,4 +1,4 @@
-// An effect as it competed, of the machine or of the soil alike.
+// An effect as it competed, whether of the machine or of the soil.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_CANDIDATE_H
 #define DIG_CLOSED_LOOP_MODEL_CANDIDATE_H
@@ -9,8 +9,8 @@
 #include <stddef.h>
 
 #define DIG_TRACE_CANDIDATES_MAX 64
-#define DIG_TRACE_SETS_MAX       4
-#define DIG_TRACE_PHASES         3
+#define DIG_TRACE_SETS_MAX       4 // of effects that are alike
+#define DIG_TRACE_PHASES         3 // of enum dig_part
 
 /// Where a residual shows: free air before, in the soil, lifted out.
 enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };

@@ -9,13 +9,14 @@
 // u = (magnitude - absent) / the table's largest, for cohesion and adhesion over the stiffness of
 // contacts (dig_template_scale()); s = log(amplitude of My / density), -1 … 1 over the base
 // gravels; hat_k is 1 at the k-th magnitude of the table, 0 at the others and where the effect is
-// absent, straight between, and the last two go on: a layer is felt from where the tooth reaches
-// it. Powers for which there are too few gravels are left out, u^2 where there is one magnitude,
-// hats at magnitudes that one gravel alone was dug at; all but a_0 are drawn towards nothing as far
-// as the beds allow, and with them the curve over u towards a parabola or a line. A layer below
-// zero is a loose one, above it a hard one: two templates that meet where u is 0. An effect without
-// templates is a factor on the plain dig instead, as its file in estimator/effects/ has it. One
-// that differs from dig to dig acts by its share: compaction pass - 1 fold.
+// absent, linear between; the last two are extrapolated. (A layer is felt only from where the tooth
+// reaches it.) Left out are powers for which there are too few gravels, u^2 where there is one
+// magnitude, and hats at magnitudes of a single gravel. All but a_0 have a prior about 0, as wide
+// as the beds make likeliest: without them the curve over u is a parabola or a line.
+//
+// A layer below zero is a loose one, above it a hard one: two templates that meet where u is 0. An
+// effect without templates is a factor on the plain dig instead, as its file in estimator/effects/
+// has it. One that differs from dig to dig acts by its share: compaction (pass - 1)-fold.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_SOIL_H
 #define DIG_CLOSED_LOOP_MODEL_SOIL_H
@@ -68,7 +69,7 @@ DIG_MUST_CHECK enum dig_status dig_soil_create(const struct dig_response_surface
                                                const struct dig_scatter          *scatter,
                                                struct dig_soil                  **soil);
 
-/// True when the effect can be told along this trajectory, at every u from low to high.
+/// True when the effect can be computed along this trajectory, at every u from low to high.
 bool dig_soil_knows(const struct dig_soil *soil, enum dig_effect_id effect, size_t trajectory);
 
 /// What distinguishes digs of one trajectory for an effect: u acts by this much. log(pace), order,
@@ -89,7 +90,7 @@ void dig_soil_add_curve(const struct dig_soil *soil, enum dig_effect_id effect, 
                         const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
                         double       curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 
-/// The magnitude a person knows, of u.
+/// The magnitude, in the effect's own unit (docs/formats/model.md), of u.
 double dig_soil_magnitude(const struct dig_soil *soil, enum dig_effect_id effect, double u);
 
 #endif // DIG_CLOSED_LOOP_MODEL_SOIL_H

@@ -1,5 +1,5 @@
-// What a hypothesis would make of digs that it made itself: the distribution that decides what is
-// significant and what fits, by simulation with refit.
+// Distribution of the test statistics under a fitted hypothesis, by simulation with refit. It
+// decides what is significant and what fits.
 //
 // Digs are drawn about the fitted model with the table's own residuals (or normal numbers where the
 // table has none), as much larger or smaller as its few packings leave open, and the sensors'
@@ -49,8 +49,8 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *batch,
                               const struct dig_common_error error[], uint64_t *seed,
                               struct dig_whitened_digs *drawn);
 
-/// Draws from fitted and fits again, draws times, or fewer where they answer what is asked (may be
-/// NULL): the chance is far from the level.
+/// Draws from fitted and fits again, draws times. Fewer suffice where the chance is clearly above
+/// or below the level asked about; asked may be NULL.
 struct dig_null_simulation
 dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
                          size_t rivals, const struct dig_hypothesis rival[], size_t draws,
@@ -60,7 +60,7 @@ dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig
 double dig_null_simulation_left(const struct dig_whitened_digs *batch,
                                 const struct dig_fitted        *fitted);
 
-/// Chance of a statistic (index 0 misfit, 1 about, 2 gain) this large.
+/// Chance, 0 … 1, of a statistic this large or larger (index 0 misfit, 1 about, 2 gain).
 double dig_null_simulation_p(const struct dig_null_simulation *null, size_t index, double value);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_NULL_SIMULATION_H

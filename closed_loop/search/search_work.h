@@ -1,4 +1,4 @@
-// What the rooms of a search work on together. Internal to its sources.
+// State that the parts of one search share. Internal to its sources.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H
 #define DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H
@@ -9,8 +9,8 @@
 /// from two.
 #define DIG_SEARCH_TOLD_APART 6.0
 
-/// Log evidence, twenty to one, by which what goes from dig to dig as an effect says leads digs
-/// that are alike, and digs that differ in no order.
+/// Log evidence (twenty to one) by which an effect that changes from dig to dig must lead both
+/// digs that are alike and digs that differ in no order.
 #define DIG_SEARCH_BY_ORDER 3.0
 
 struct dig_search_work {
@@ -37,15 +37,15 @@ double dig_search_best_evidence(const struct dig_search *s);
 /// Chooses one effect, two, or none that has a name: s->chosen, s->unlisted.
 void dig_search_which(struct dig_search_work *c);
 
-/// By how much log likelihood a line through the sizes of digs in their order leads sizes in no
-/// order, and a parabola, which more than two differences tell.
+/// Sizes of the digs against their order: log likelihood by which a line, and a parabola, lead
+/// sizes in no order.
 struct dig_drift {
     double line, parabola;
 };
 
-/// Of a fit that holds wear; of any other a line leads by INFINITY. spread: by which the batch was
-/// widened; sizes are weighed by the table's own scatter, as a dig that is unlike the others has
-/// widened it. Microseconds.
+/// For a fit with wear; for any other, line is INFINITY. spread: by which the batch was widened. It
+/// is undone: a dig that is unlike the others widened the batch, and must not hide by that.
+/// Microseconds.
 struct dig_drift dig_drift_of(const struct dig_whitened_digs *batch,
                               const struct dig_fitted *fitted, double spread);
 

@@ -1,5 +1,5 @@
-// What a campaign's digs show that the table does not hold: the result of a trace, and the call
-// that makes it. Order and reasons: docs/numerics/closed_loop.md.
+// Traces the residual of a campaign to missing effects: the result, and the call that makes it.
+// Order and reasons: docs/numerics/closed_loop.md.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_TRACE_H
 #define DIG_CLOSED_LOOP_VERDICT_TRACE_H
