@@ -23,7 +23,7 @@ static const struct dig_command commands[] = {
     { "identify", "TABLE.sqlite RECORDING... [OPTION]...",
       "Finds the gravel that resists like recorded digs.",
       "All digs are matched together, by moment and forces where every dig has them, else by the "
-      "moment alone. They are to be along one trajectory, or along such as begin with "
+      "moment alone. They must be along one trajectory, or along several that begin with "
       "\"simple\".\n\n"
       "A recording is a force recording, or with --machine a machine recording or an LCM log of "
       "the daemon, which may hold several digs.",
@@ -34,11 +34,11 @@ static const struct dig_command commands[] = {
       "        --machine config/machines/zx200_trench.yaml --json >id.json\n" },
     { "predict", "TABLE --identified ID.json --trajectory NAME [OPTION]...",
       "Predicts what an identified gravel resists other digs with.",
-      "At the table's scale, with --machine at that machine's, too: its forces are lambda^3, its "
-      "moments lambda^4 times the table's, lambda being how many times its bucket is as long. Dug "
-      "deeper or with the bucket turned where the table was. With digs measured, how wrong that "
-      "was, each as it was dug: relative Euclidean norm of the moment, "
-      "+-0.16 s.",
+      "The prediction is at the table's scale, with --machine at that machine's, too: forces are "
+      "lambda^3, moments lambda^4 times the table's, lambda being its bucket's length over the "
+      "table's. Another depth or attack is predicted where the table has digs of such. --measured "
+      "also prints the error, the relative Euclidean norm of the moment smoothed over +-0.16 s; "
+      "each dig is compared as it was dug.",
       "digloop predict tables/product.sqlite --identified id.json \\\n"
       "        --trajectory actual --machine config/machines/zx200_trench.yaml\n"
       "digloop predict tables/product.sqlite --identified id.json \\\n"
@@ -47,9 +47,9 @@ static const struct dig_command commands[] = {
       "        --trajectory actual --measured day.lcm \\\n"
       "        --machine config/machines/zx200_trench.yaml\n" },
     { "trace", "TABLE.sqlite CAMPAIGN/ [OPTION]...", "Traces what the table lacks to an effect.",
-      "The residual of a campaign's digs, the effect it traces to, the error on the holdout digs "
-      "before and after that effect is added. Effects of the soil are compared with beds that hold "
-      "them.\n\n"
+      "Prints the residual of a campaign's digs, the effect it traces to, and the error on the "
+      "holdout digs before and after that effect is added. Effects of the soil are compared with "
+      "beds that hold them.\n\n"
       "A file \"-\" is standard output. What people are told goes there without --json and --add, "
       "else to standard error.",
       "digloop trace tables/product.sqlite campaign/\n"
@@ -69,8 +69,8 @@ static const struct dig_command commands[] = {
       "digloop check my.yaml air.lcm --html check.html --json check.json\n" },
     { "design", "TABLE.sqlite [OPTION]...",
       "Tells which simple dig of the table tells most about the gravel.",
-      "And which tells effects apart, and whether digs simulated with the table's own scatter bear "
-      "that out.",
+      "Also which dig tells effects apart, and whether digs simulated with the table's own scatter "
+      "confirm it.",
       "digloop design tables/product.sqlite\n" },
 };
 

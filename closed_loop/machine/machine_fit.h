@@ -1,4 +1,4 @@
-// Which effects of the machine the equations of free air ask for, and with what values.
+// Selects effects of the machine by their evidence in free air, and solves for their values.
 //
 // Linear in theta with independent normal priors (here of unit width), noise of variance s2 (never
 // below the sensors'), the evidence of a set of effects is closed form: with H = I + A / s2 over
@@ -6,9 +6,9 @@
 //
 //   log evidence = ( b^T H^-1 b - log det H ) / 2                       against no effect at all
 //
-// so a parameter that the air does not tell costs nothing and earns nothing. How wide the
-// prior of one effect is, is not known before: a few widths are tried, and the best is counted as
-// the share that it has in their mean, at least. Under no effect the evidence ratio has mean 1,
+// so a parameter that the air does not show costs nothing and earns nothing. The width of one
+// effect's prior is not known: of a few widths the best is taken, less the log of their number.
+// Under no effect the evidence ratio has mean 1,
 // hence exceeds K with a chance of at most 1 / K (Ville): an effect joins when the ratio exceeds
 // candidates / false_alarm.
 
@@ -45,8 +45,8 @@ struct dig_fit_answer {
     double *covariance; // [columns * columns]
 };
 
-/// Lines up the parameters as dig_lines_make() does, what the file may have wrong among them: that
-/// has its prior in every answer. DIG_ENOMEM: *fit is empty then.
+/// Makes the columns as dig_lines_make() does. Errors of the file have their prior in every answer.
+/// DIG_ENOMEM: *fit is empty then.
 DIG_MUST_CHECK enum dig_status
 dig_fit_make(struct dig_air *air, const double file_scale[DIG_FILE_ERRORS], struct dig_fit *fit);
 void dig_fit_finish(struct dig_fit *fit);
@@ -62,8 +62,8 @@ void dig_fit_set_noise(struct dig_fit *fit, double s2);
 /// effect. A bent column stays where the lines have it.
 void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
-/// The same with priors as wide as the parameters' scales, which hold the more the less the air
-/// tells of a parameter.
+/// The same with priors as wide as the parameters' scales. A prior counts the more, the less the
+/// air shows of a parameter.
 void dig_fit_solve_wide(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
 
 /// The same width for all columns of a set; of what the file may have wrong, its tolerance; 0 for

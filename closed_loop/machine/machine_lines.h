@@ -3,9 +3,9 @@
 //
 //   rest(theta) = rest + sum over columns of slope * (theta - at)      every row in its own sigmas
 //
-// A column is one parameter in units of its scale, 1 sigma of what is likely before anything is
-// measured. Payload is the same in all segments but the one before the first dig, and besides may
-// be another in each: one column more for every segment.
+// A column is one parameter in units of its scale, 1 sigma of its prior. Payload is common to all
+// segments but the one before the first dig. Each segment may have a payload of its own besides,
+// one column more.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_LINES_H
@@ -57,14 +57,14 @@ struct dig_lines {
     struct dig_correction  *correction; // [segments]; the same
 };
 
-/// Writes what a bucket carries: the common payload of these values, if it carries that, and one of
-/// its own, which lies where the common one does; where there is hardly any, in the bucket's centre
-/// of mass.
+/// Writes a bucket's payload: the common one of these values, if it carries that, and one of its
+/// own of own_kg. That lies where the common one does or, where that is hardly any, in the bucket's
+/// centre of mass.
 void dig_lines_carry(const double common[], bool carries, double own_kg,
                      struct dig_added_mass *payload);
 
-/// Lines up the parameters at their absent values. The air must outlive it. file_scale: 1 sigma of
-/// what a file may have wrong besides, each a column; 0: that is right, and has none. DIG_ENOMEM:
+/// Makes the columns, all parameters at their absent values. The air must outlive it. file_scale: 1
+/// sigma of each error of the file, a column each; 0: no such error and no column. DIG_ENOMEM:
 /// *lines is empty then.
 DIG_MUST_CHECK enum dig_status dig_lines_make(struct dig_air   *air,
                                               const double      file_scale[DIG_FILE_ERRORS],
@@ -74,30 +74,30 @@ void dig_lines_finish(struct dig_lines *lines);
 
 /// Makes the equations linear around at, for the effects of the set (a bit each); columns of others
 /// count as without effect. Two evaluations of the air a column: some tenths of a second for all.
-/// Leaves in work what is left of every row, as far as it is trusted, which any function that needs
-/// room overwrites, and the slopes.
+/// Leaves in work every row's residual times its trust, which any function that needs room
+/// overwrites, and the slopes.
 void dig_lines_update(struct dig_lines *lines, unsigned set);
 
-/// How every row changes with a column, as far as it is trusted, as last updated: [rows].
+/// Slope of every row by a column, times the row's trust, as last updated: [rows].
 const double *dig_lines_slope(const struct dig_lines *lines, size_t column);
 
-/// Trusts every row as far as the form of what is explained of it where the lines stand can be
-/// trusted: an effect says how far its form may be wrong, and the rest of the rows how much of that
-/// is. How much is left in the means of segments: chi-squared, one degree of freedom for every
-/// segment and joint.
+/// Sets the trust of every row from what effects explain of it at the present values: an effect
+/// says by what share its form may be wrong, and the rows' residuals how much of that share is.
+/// Returns chi-squared of the segments' means, one degree of freedom for every segment and joint.
 double dig_lines_judge(struct dig_lines *lines);
 
-/// What is left of every row in its sigmas at other values, not linear, trusted or not: rest[rows].
+/// Residual of every row in its sigmas at other values, neither linearised nor times its trust:
+/// rest[rows].
 void dig_lines_rest(const struct dig_lines *lines, const double at[], double rest[]);
 
-/// What the file has wrong at these values.
+/// Errors of the file at these values.
 void dig_lines_file(const struct dig_lines *lines, const double at[], double file[DIG_FILE_ERRORS]);
 
 /// The corrections of all segments at these values, correction[segments].
 void dig_lines_correct(const struct dig_lines *lines, const double at[],
                        struct dig_correction correction[]);
 
-/// The sum of rest^2 at other values, as far as rows are trusted.
+/// The sum of (trust * rest)^2 at other values.
 double dig_lines_rest2(const struct dig_lines *lines, const double at[]);
 
 /// The column of an effect's first parameter; its others follow.

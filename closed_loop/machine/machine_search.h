@@ -1,5 +1,5 @@
-// Inside of the machine side: its recordings, and what the sources of the search in free air work
-// on together (machine_search.c, machine_select.c, machine_answers.c).
+// State of the machine side: its recordings, and the search in free air that machine_search.c,
+// machine_select.c and machine_answers.c share.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
@@ -18,7 +18,7 @@ struct dig_machine_side {
     double                      own_payload_kg[DIG_MEASURED_MAX]; // beyond the digs' common one
 };
 
-/// Air that leaves more than this of a row's variance is not understood.
+/// Air whose residual is more than this many times a row's variance is unexplained.
 #define DIG_MACHINE_UNCLEAR_REST2 1.2
 
 /// Two sets of effects whose log evidence differs by less cannot be told apart.
@@ -37,22 +37,23 @@ struct dig_machine_search {
     struct dig_machine_drift drift;                     // that explains as much as the set, or none
 };
 
-/// Chooses the set that explains the air, from equations with nothing explained yet, and leaves out
-/// what slewing pulls. DIG_ENOMEM.
+/// Chooses the set that explains the air, beginning without effects, and leaves out rows in which
+/// the machine slewed. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_machine_select(struct dig_machine_search *s);
 
-/// Whether what is left of the rows is more than their noise, or the set is makeshift.
+/// Whether the rows' residual is more than their noise, or the set is makeshift: more than
+/// DIG_MACHINE_AT_ONCE effects, or a negative payload.
 bool dig_machine_is_unclear(const struct dig_machine_search *s);
 
 /// An effect with its parameters as last solved.
 struct dig_model_effect dig_machine_effect(const struct dig_machine_search *s,
                                            enum dig_effect_id id, double probability);
 
-/// No effect, with what the file may have wrong.
+/// The answer without an effect, with the errors of the file.
 void dig_machine_write_none(struct dig_machine_search *s, struct dig_machine_finding *finding);
 
-/// The set found, where it is of several, and every candidate alone, with what free air leaves
-/// open.
+/// The set found, where it is of several effects, and every candidate alone, each with the
+/// covariance that free air leaves of its numbers.
 void dig_machine_write_answers(struct dig_machine_search *s, struct dig_machine_finding *finding);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H

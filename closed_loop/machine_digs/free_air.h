@@ -1,5 +1,5 @@
-// Where before and after a dig the machine moves in free air: clear of the soil, after the load is
-// dumped, and not in another dig.
+// Finds where before and after a dig the machine moves in free air: clear of the soil, after the
+// load is dumped, and not in another dig.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_FREE_AIR_H
 #define DIG_CLOSED_LOOP_MACHINE_DIGS_FREE_AIR_H
@@ -13,8 +13,8 @@ struct dig_vertices {
     size_t                *sample;
 };
 
-/// Leaves in a dig whose contact and end are known, and which goes from one vertex to another,
-/// where its air begins and ends.
+/// Writes before, before_end, after and after_end of a dig whose contact and end are known. It goes
+/// from vertex start to vertex end.
 void dig_free_air_find(const struct dig_vertices *v, size_t start, size_t end, double tooth_m,
                        struct dig_machine_dig *dig);
 

@@ -5,13 +5,13 @@
 //
 //   cov(one dig) = factor(strength) amplitude^2 S,   strength = log(amplitude of My / density)
 //
-// S is pooled over all packings of all entries, drawn a little towards correlations that depend on
-// the distance along the dig alone, widened by what digs that took no part in it exceed it, and
-// given a floor of DIG_SCATTER_FLOOR of the amplitude: no DEM knows the curves better than that.
+// S is pooled over all packings of all entries and shrunk towards correlations that depend on the
+// distance along the dig alone. It is widened by what left-out digs exceed it by, and has a floor
+// of DIG_SCATTER_FLOOR of the amplitude: no DEM knows the curves better than that.
 //
-// A bed differs from the next most of all as another gravel would, which changes a dig otherwise at
-// each gravel, so that S, which is pooled, has too little of it: what left-out digs exceed S by in
-// these directions is measured, and added to S there.
+// Beds of one gravel differ most in the directions in which gravels differ. These are other ones at
+// each gravel, so S, which is pooled, is too small in them. What left-out digs exceed S by in these
+// directions is measured, and added to S there.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_SCATTER_H
 #define DIG_CLOSED_LOOP_MODEL_SCATTER_H
