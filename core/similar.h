@@ -19,8 +19,8 @@ double dig_scene_scale(const struct dig_scene *scene, const struct dig_scene *ot
 /// it would be after scaling. Compared within DIG_SIMILAR: the bucket's width and outline, the box
 /// and whether it has sides, the size of the grains, gravity, and of trajectories of one name the
 /// start above the ground and behind the wall and the way from there (of bucket and tooth, whatever
-/// the pace). What makes contacts stiff may differ by a factor of 1.75: four times Young's modulus
-/// adds 13 % to the moment (docs/numerics/dem.md), so that much 5 %.
+/// the pace). The stiffness of contacts may differ by a factor of 1.75. That changes the moment by
+/// some 5 %, as four times Young's modulus adds 13 % (docs/numerics/dem.md).
 ///
 /// Not compared: what trajectories only one of them has, how the bed was poured, time step and
 /// output, Poisson's ratio and restitution, and what laws and bed hold beyond equal spheres in a
