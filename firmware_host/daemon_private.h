@@ -1,4 +1,4 @@
-// What the daemon is made of: daemon.c makes and connects it, daemon_run.c runs its threads.
+// Parts of the daemon: daemon.c makes and connects them, daemon_run.c runs its threads.
 
 #ifndef DIG_FIRMWARE_HOST_DAEMON_PRIVATE_H
 #define DIG_FIRMWARE_HOST_DAEMON_PRIVATE_H

@@ -1,4 +1,4 @@
-// Whether the band of a prediction holds: what share of a dig's points lies within it.
+// Share of a dig's points that lies within the band of its prediction.
 
 #ifndef DIG_CLOSED_LOOP_ACCURACY_COVERAGE_H
 #define DIG_CLOSED_LOOP_ACCURACY_COVERAGE_H

@@ -1,5 +1,5 @@
-// How wrong curves are against the digs they are for: the error of docs/numerics.md, its interval,
-// its noise floor.
+// Error of predicted curves against measured digs (docs/numerics.md), its interval and its noise
+// floor.
 
 #ifndef DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
 #define DIG_CLOSED_LOOP_ACCURACY_JUDGE_H

@@ -1,4 +1,4 @@
-// How wrong a predicted dig was: the relative Euclidean norm that every report quotes.
+// Error of a predicted dig: the relative Euclidean norm that every report quotes.
 //
 //   error = sqrt( sum over digs of integral (measured - predicted)^2 dt
 //               / sum over digs of integral measured^2 dt )

@@ -1,6 +1,5 @@
-// Whether what is left of digs depends on where they stand: means over bins of a state, and the
-// slope of a straight line through all points. Points of one dig depend on each other, so digs are
-// the blocks that a bootstrap draws.
+// Trend of digs' residuals over a regressor: means over its bins, and the slope of a straight line
+// through all points. Points of one dig depend on each other, so a bootstrap draws whole digs.
 
 #ifndef DIG_CLOSED_LOOP_ACCURACY_TREND_H
 #define DIG_CLOSED_LOOP_ACCURACY_TREND_H

@@ -1,12 +1,13 @@
-// How well the angles tell a block's mean acceleration. Parabolas of neighbouring points share
-// angles: what noise makes of two is alike near each other and of other sign farther apart.
+// Variance of a block's mean acceleration from noise and steps of the angles. Parabolas of
+// neighbouring points share angles, so their noise is correlated: positively near each other,
+// negatively farther apart.
 //
 // While a joint turns slowly, a sensor with steps reads a sawtooth, of the frequency at which the
-// joint passes steps; noise of the sensor takes off what it spreads. The k-th harmonic of a
-// sawtooth of steps s that noise sigma spreads is s / (pi k) exp(-2 (pi k sigma / s)^2). The
-// acceleration of the parabola fitted within +-h makes of one that turns x within h as much as
-// 15 j2(x) / h^2, the mean over a block sin(y) / y, y being what it turns within half of that. j2:
-// the spherical Bessel function.
+// joint passes steps. Noise sigma of the sensor smooths it: its k-th harmonic at steps s is
+// s / (pi k) exp(-2 (pi k sigma / s)^2). The acceleration of a parabola fitted within +-h
+// multiplies a harmonic whose phase turns by x within h by 15 j2(x) / h^2, j2 being the spherical
+// Bessel function. The mean over a block multiplies it by sin(y) / y, y being the phase in half a
+// block.
 
 #ifndef DIG_CLOSED_LOOP_AIR_MACHINE_TURN_H
 #define DIG_CLOSED_LOOP_AIR_MACHINE_TURN_H

@@ -1,9 +1,9 @@
-// How well two columns of pressures, taken for the chambers of a drive, hold what the drive bears
-// in free air.
+// Misfit of two columns of pressures, taken for the chambers of a drive, with the load that the
+// drive bears in free air.
 //
 // Coarse on purpose. A file may be wrong by some per cent and a sensor by some bar without anything
-// being mixed up, so what is left counts in shares of the load, after a constant force and a factor
-// of the load within bounds are taken off.
+// being mixed up. So the residual counts relative to the load, after a constant force and a factor
+// of the load, both within bounds, are fitted.
 
 #ifndef DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
 #define DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H

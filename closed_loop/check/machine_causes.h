@@ -1,6 +1,6 @@
-// What of a file or of a sensor the equations of free air ask for, by how much, and what they leave
-// open: joint by joint the zero of its angle, factor and offset of its pressures, the weight of its
-// link, and how late the pressures are.
+// Errors of a machine's file or sensors as the equations of free air show them, with their sigma:
+// for each joint the zero of its angle, factor and offset of its pressures, and the weight of its
+// link; for all the delay of the pressures.
 //
 // All columns of the equations (machine_lines.h) always have a prior as wide as their tolerance;
 // one that is named a cause has a wide one. Causes join while the evidence grows by more than
@@ -39,9 +39,9 @@ struct dig_cause {
 
 struct dig_causes {
     struct dig_cause cause[DIG_CAUSES];
-    double           rest[DIG_JOINTS];       // rms over sigma that is left; NaN: no row
+    double           rest[DIG_JOINTS];       // rms of the residual over sigma; NaN: no row
     double           rest_N[DIG_JOINTS];     // rms of the same at the rod
-    double           rest_plain[DIG_JOINTS]; // and with nothing taken off
+    double           rest_plain[DIG_JOINTS]; // and without any cause
 };
 
 /// Fits. air: made of one recording; the causes named are in *correction after it.

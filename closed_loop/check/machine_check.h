@@ -1,4 +1,4 @@
-// What the file of a machine makes of a recording in free air: a checklist with answers.
+// Checks a machine's file against a recording in free air: a checklist with answers.
 //
 // Without soil the balance of every joint is zero. First the recording is read in the way that
 // leaves least of it (machine_reading.h): signs, large zeros, which cylinder is which, head and
@@ -7,8 +7,8 @@
 // with a wide prior, one at a time, while each multiplies the evidence by more than causes / false
 // alarm.
 //
-// One recording cannot show everything: what it does not tell is said so, and causes that explain
-// it as well as the one named are named with it.
+// One recording cannot show everything. What it does not show is "not told", and causes that
+// explain it as well as the one named are named with it.
 
 #ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_H
 #define DIG_CLOSED_LOOP_CHECK_MACHINE_CHECK_H
@@ -65,12 +65,12 @@ struct dig_check_item {
 
 #define DIG_CHECK_ITEMS_MAX 64
 
-/// Pushes over time for a picture, N: measured and what the file asks for; [3 * point + joint].
+/// Pushes over time for a picture, N: measured and by the file's balance; [3 * point + joint].
 struct dig_check_curves {
     size_t  points;
     double *time_s;
     double *drive_N, *load_N;               // one allocation; as the columns and the file say
-    double *mended_drive_N, *mended_load_N; // likewise; read as found best, causes named taken off
+    double *mended_drive_N, *mended_load_N; // likewise; best reading, corrected
 };
 
 /// Free with dig_machine_air_check_finish().

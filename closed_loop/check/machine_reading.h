@@ -1,8 +1,8 @@
-// How a recording of free air is to be read, where that is another than its columns say: an angle
-// that counts the other way or from elsewhere, pressures of another cylinder, head for rod, another
-// unit. Discrete hypotheses, one likelihood: what each leaves of the balance of every joint.
+// Finds mistakes in how a recording of free air is read: an angle that counts the other way or from
+// elsewhere, pressures of another cylinder, head for rod, another unit. Each is a discrete
+// hypothesis; one likelihood compares their residuals of the balance of every joint.
 //
-// Coarse on purpose (drive_misfit.h): what is finer is told by the fit (machine_check.h).
+// Coarse on purpose (drive_misfit.h): the fit of machine_check.h finds finer errors.
 
 #ifndef DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H
 #define DIG_CLOSED_LOOP_CHECK_MACHINE_READING_H

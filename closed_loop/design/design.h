@@ -1,5 +1,5 @@
-// Which simple dig tells most about the gravel, and which effects it tells apart: from the table's
-// means and the scatter of its packings, before anything is dug.
+// Ranks simple digs by their information on the gravel, and by the effects that they tell apart,
+// from the table's means and the scatter of its packings, before anything is dug.
 //
 //   information = 1/2 log2 det(1 + J' C^-1 J / 3)   bits
 //   sigmas      = sqrt(min over g of (d - J g)' C^-1 (d - J g) + 3 g' g)

@@ -1,14 +1,13 @@
-// What all digs of a trajectory share and no number of digs averages out: one covariance, built in
-// one place. In a batch's units, where one dig scatters by 1 in every direction,
+// Covariance of the mean of a trajectory's digs, with the errors that all digs share and no number
+// of digs averages out. In a batch's units, where one dig scatters by 1 in every direction,
 //
 //   cov(mean of n digs) = (1/n + even) 1 + W (sum over parts of size size' . R + sum of shift
 //   shift') W'
 //
 // even: the surface's and the templates' own variance, beds that repeat. A part is what a model
-// may get wrong by a factor that changes smoothly along the dig: what two DEM codes make of a plain
-// dig, what a template makes of an effect, what is said of another approach. size: one sigma of it,
-// feature by feature; R: how alike the factor is at two bins and on two channels; W: the whitening.
-// A shift is what the table may have at another place: closed_loop/fit/shifts.h.
+// may get wrong by a factor that changes smoothly along the dig: the difference of two DEM codes,
+// the form of a template, another approach. size: 1 sigma of it, feature by feature; R: correlation
+// of the factor between bins and channels; W: the whitening. Shifts: closed_loop/fit/shifts.h.
 
 #ifndef DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
 #define DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H
@@ -32,8 +31,8 @@ struct dig_common_error {
 void dig_common_error_build(const struct dig_whitened_digs_group *group,
                             struct dig_common_error              *error);
 
-/// Of a group's noise, what the approaches that were taken off its digs bring in: it is of those
-/// digs alone. As long.
+/// The part of a group's noise that comes from its digs' other approaches, which were subtracted.
+/// It is of those digs alone. Some microseconds.
 double dig_common_error_of_approaches(const struct dig_whitened_digs_group *group);
 
 /// Squares of a residual of the group's mean over the covariance; residual becomes L^-1 residual.

@@ -1,13 +1,13 @@
-// How well a hypothesis at given numbers explains a batch: the misfit, -2 log likelihood.
+// Misfit of a hypothesis at given numbers to a batch: -2 log likelihood.
 //
 //   sum over trajectories [ |L^-1 (mean y - mean model)|^2 + log det L L'
 //                           + sum over digs |(y - mean y) - (model - mean model)|^2 ]
 //
 // L L' is the covariance of a trajectory's mean: closed_loop/fit/common_error.h. Where the batch
 // has steps, z is fitted along, exactly, and integrated out: mean model grows by D z, and
-// |z - middle|^2 + log det (1 + sum D' C^-1 D) is added. What has no name is an effect whose form
-// is not known: a factor on the plain dig, with a wide prior, that changes along it. It has no
-// numbers to fit; the covariance holds all that it may be.
+// |z - middle|^2 + log det (1 + sum D' C^-1 D) is added. What has no name is an effect of unknown
+// form: a factor on the plain dig, with a wide prior, that changes along it. It has no numbers to
+// fit; it is part of the covariance.
 
 #ifndef DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H
 #define DIG_CLOSED_LOOP_FIT_LIKELIHOOD_H

@@ -1,6 +1,6 @@
-// How well the numbers of a hypothesis are known: its posterior within the bounds of the table and
-// the effects, all as likely before. Numbers at a bound, and those that trade off against each
-// other, need no case of their own.
+// Intervals of a hypothesis' numbers from its posterior, with a uniform prior within the bounds of
+// the table and the effects. Numbers at a bound, and those that trade off against each other, need
+// no case of their own.
 
 #ifndef DIG_CLOSED_LOOP_FIT_POSTERIOR_H
 #define DIG_CLOSED_LOOP_FIT_POSTERIOR_H

@@ -22,14 +22,14 @@ struct dig_whitened_digs_group {
     double mean[DIG_FEATURES];                 // of the digs' y
     double about;                              // sum of squares of the digs' y about the mean
     double log_det;                            // of one dig's covariance relative to amplitude
-    double sensor[DIG_FEATURES];               // 1 sigma of the sensors, which that holds
-    // What of them lasts: covariance of a channel's bins over its variance, and 1 sigma; in that,
-    // too.
+    double sensor[DIG_FEATURES];               // 1 sigma of the sensors; that holds it
+    // Correlated noise, which that covariance holds, too: covariance of a channel's bins per unit
+    // variance, and 1 sigma.
     double lasting[DIG_FEATURE_BINS * DIG_FEATURE_BINS];
     double lasting_sigma[DIG_FORCE_CHANNELS];
     double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
-    // What other approaches add to the mean, which was taken off: units of the table; and as it was
-    // dug in few beds, variance of the mean.
+    // What other approaches add to the mean was subtracted. 1 sigma of its error, units of the
+    // table; and variance of the mean, as the table has few beds of them.
     double added_error[DIG_FEATURES];
     double added_noise;
 };

@@ -1,5 +1,5 @@
-// What one dig of a trajectory scatters by: that of the table's beds, of a ground whose depth is
-// open, and of the sensors.
+// Covariance of one dig of a trajectory: scatter of the table's beds, unknown depth of the ground,
+// and noise of the sensors.
 
 #ifndef DIG_CLOSED_LOOP_FIT_WHITENED_GROUP_H
 #define DIG_CLOSED_LOOP_FIT_WHITENED_GROUP_H

@@ -3,9 +3,9 @@
 //   curve(g) = amplitude(g) shape(g),   log amplitude and shape polynomials in (x, y, z)
 //
 // x, y, z: friction, rolling friction and log density, -1 … 1 over the table's axes; of the third
-// degree, fitted by least squares weighted by packings, the cubic terms drawn towards none. All
-// entries vouch for every gravel, so that the curve's own error is a fraction of an entry's:
-// noise() says which, as a multiple of the variance of one dig. Amplitude:
+// degree, fitted by least squares weighted by packings, with a prior about 0 for the cubic terms.
+// All entries inform every gravel, so the surface's variance is a fraction of an entry's;
+// dig_response_surface_noise() gives it, over the variance of one dig. Amplitude:
 // closed_loop/recordings/features.h.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_RESPONSE_SURFACE_H

@@ -1,5 +1,5 @@
-// How templates come out of beds that hold an effect: closed_loop/model/soil.h has the formula.
-// Internal to soil.c.
+// Fits templates to beds that hold an effect (formula: closed_loop/model/soil.h). Internal to
+// soil.c.
 
 #ifndef DIG_CLOSED_LOOP_MODEL_SOIL_FIT_H
 #define DIG_CLOSED_LOOP_MODEL_SOIL_FIT_H

@@ -1,5 +1,5 @@
-// How far along its trajectory the rows of a force recording are: told by the poses, whatever the
-// pace, how noisy the path sensors are, and whether the recording has all of the dig.
+// Aligns the rows of a force recording with its trajectory by pose, at any pace, with noisy path
+// sensors, and where the recording lacks a part of the dig.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H
 #define DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H
@@ -18,7 +18,7 @@ struct dig_alignment_target {
     double                       least_rad, most_rad; // 0 and 0: not at all
 };
 
-/// Which part of a trajectory's path, 0 … 1, a recording tells of, and how far it lies off it.
+/// The part of a trajectory's path, 0 … 1, that a recording covers, and its distance from the path.
 /// Below 0 and above 1: it goes on beyond the trajectory's ends.
 struct dig_alignment_part {
     double from, to;

@@ -1,4 +1,4 @@
-// How much deeper than its trajectory a dig goes along its way, told by its path.
+// Depth of a dig along its path, beyond that of its trajectory.
 //
 //     trajectory   ---\_______________/
 //     dig          ---\_____          /      deeper: by how much, over the depth of the first leg

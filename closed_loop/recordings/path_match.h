@@ -1,4 +1,4 @@
-// Which trajectory of a table a force recording followed, and how it was dug against it.
+// Finds the trajectory of a table that a force recording followed, and its approach.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_PATH_MATCH_H
 #define DIG_CLOSED_LOOP_RECORDINGS_PATH_MATCH_H

@@ -1,5 +1,5 @@
-// Where a dig stands at each point of its path, as its trajectory tells it: what a residual may
-// depend on. Rig scale.
+// State of a dig at each point of its path, from its trajectory: regressors of its residual. Rig
+// scale.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_REGRESSORS_H
 #define DIG_CLOSED_LOOP_RECORDINGS_REGRESSORS_H

@@ -1,5 +1,4 @@
-// What is left of digs (closed_loop/verdict/residuals.h) in a trace's reports:
-// docs/formats/trace.md.
+// Residuals of digs (closed_loop/verdict/residuals.h) in a trace's reports: docs/formats/trace.md.
 
 #ifndef DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H
 #define DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H

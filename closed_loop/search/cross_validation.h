@@ -1,4 +1,4 @@
-// Whether what was chosen predicts digs that took no part better than no effect does.
+// Cross-validation: whether the chosen effects predict left-out digs better than no effect does.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_CROSS_VALIDATION_H
 #define DIG_CLOSED_LOOP_SEARCH_CROSS_VALIDATION_H
@@ -7,7 +7,7 @@
 
 /// Leaves out each dig in turn, fits both hypotheses to the others, and predicts it by both: the
 /// sum over digs of |y - plain|^2 - |y - chosen|^2, in squares of the scatter of one dig. Above 0
-/// the effects tell of a dig what they were not fitted to. A dig without which the effects cannot
+/// the effects predict digs to which they were not fitted. A dig without which the effects cannot
 /// be fitted counts 0. Milliseconds a dig.
 double dig_cross_validation_gain(const struct dig_whitened_digs *batch,
                                  const struct dig_fitted *plain, const struct dig_fitted *chosen);

@@ -1,13 +1,13 @@
-// Whether what is left of digs is white along them. Ljung and Box's statistic of each dig's
-// whitened bins, channel by channel,
+// Tests whether the residual of digs is white along them, by Ljung and Box's statistic of each
+// dig's whitened bins, channel by channel,
 //
 //   Q = sum over channels of n (n + 2) sum over lags l of r_l^2 / (n - l)
 //   r_l = sum z_k z_(k+l) / sum z_k^2
 //
-// the mean not taken off: a residual of one sign is not white, one in a single bin is. How large
-// its mean over the digs is when nothing is missing, digs drawn from the fitted hypothesis and
-// fitted again tell (closed_loop/search/null_simulation.h): whitened bins of a table's residuals
-// are not quite normal or independent.
+// without subtracting the mean: a residual of one sign is not white, one in a single bin is. Its
+// distribution when nothing is missing comes from digs drawn from the fitted hypothesis and fitted
+// again (closed_loop/search/null_simulation.h), as whitened bins of a table's residuals are not
+// quite normal or independent.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_PORTMANTEAU_H
 #define DIG_CLOSED_LOOP_SEARCH_PORTMANTEAU_H

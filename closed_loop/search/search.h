@@ -1,10 +1,10 @@
-// Whether something is missing, and what: all hypotheses against each other on one batch.
+// Searches for what is missing: compares all hypotheses on one batch.
 //
-// Whether: the plain hypothesis' misfit, and the most that any one effect takes off it, each
-// against its distribution by simulation (closed_loop/search/null_simulation.h); the smaller chance
-// of the two, doubled. Which: - BIC / 2 of each effect beside the plain hypothesis, of pairs when a
-// second effect is significant beside the first, of a gravel outside the grid, and of a residual
-// without a name.
+// Whether anything is missing: the plain hypothesis' misfit, and the most that any one effect
+// reduces it, each against its distribution by simulation (closed_loop/search/null_simulation.h);
+// the smaller chance of the two counts, for two tries. Which effect: - BIC / 2 over the plain
+// hypothesis of each effect, of pairs, of a gravel outside the grid, and of a residual without a
+// name.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_SEARCH_H
 #define DIG_CLOSED_LOOP_SEARCH_SEARCH_H

@@ -1,11 +1,9 @@
-// What is missing where no effect of the list explains it: what the residual depends on, and what
-// to add all the same.
+// The residual that no effect of the catalogue explains: what it depends on, and its correction.
 //
 // The residual of each channel is regressed on functions of the bucket's state
-// (closed_loop/search/unlisted_regression.h): on those of the trajectory it decides, and beside
-// them on acceleration, pass and pitch, dig by dig, it tells what the residual depends on. The
-// correction itself is the mean residual of each trajectory, drawn towards none by what is known of
-// its noise.
+// (closed_loop/search/unlisted_regression.h). The regression on those of the trajectory decides;
+// one that adds acceleration, pass and pitch, dig by dig, says what the residual depends on. The
+// correction is the mean residual of each trajectory, shrunk towards zero by its noise.
 
 #ifndef DIG_CLOSED_LOOP_SEARCH_UNLISTED_H
 #define DIG_CLOSED_LOOP_SEARCH_UNLISTED_H

@@ -8,8 +8,8 @@
 
 #include "closed_loop/fit/hypothesis.h"
 
-/// What a residual may depend on. Those before DIG_BASIS_ACCELERATION are told by the trajectory
-/// and the pace.
+/// Regressors of a residual. Those before DIG_BASIS_ACCELERATION follow from the trajectory and the
+/// pace.
 enum dig_basis {
     DIG_BASIS_AMPLITUDE, // 1
     DIG_BASIS_DEPTH,     // over the tooth's length

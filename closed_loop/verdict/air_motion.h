@@ -1,6 +1,6 @@
-// Which motion in free air tells two corrections of a machine apart: the machine of the file moves
-// one joint back and forth, its chambers at what that takes, and what is left of the balance with
-// either correction is compared, row by row as free air is traced
+// Finds the motion in free air that best tells two corrections of a machine apart. The machine of
+// the file swings one joint, its chambers at the pressures which that takes. The residuals of the
+// balance with either correction are compared, row by row as free air is traced
 // (closed_loop/air/machine_air.h).
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_AIR_MOTION_H

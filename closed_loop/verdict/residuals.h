@@ -1,5 +1,5 @@
-// What is left of a campaign's digs, for people and programs: dig by dig, against the state of the
-// dig, and whether it is white. Nothing is decided by it.
+// Residuals of a campaign's digs, for people and programs: dig by dig, over the state of the dig,
+// and whether they are white. Nothing is decided by them.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
 #define DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
@@ -37,7 +37,7 @@ struct dig_residuals {
     // (of forces: of their resultant). known: any dig does.
     bool             known[DIG_FORCE_CHANNELS];
     struct dig_trend trend[DIG_FORCE_CHANNELS][DIG_REGRESSORS];
-    // Of the digs fitted to, machine effects taken off: by the gravel alone, and with what was
+    // Of the fitted digs, corrected for machine effects: by the gravel alone, and with what was
     // named of the soil.
     struct dig_whiteness without, with;
 };

@@ -95,9 +95,8 @@ double dig_trace_misfit(const struct dig_trace_work *w, const struct dig_fitted 
 DIG_MUST_CHECK enum dig_status dig_trace_tell_noise(const struct dig_trace_work *w,
                                                     struct dig_fitted           *plain);
 
-/// Leaves in confirmed whether what the search chose may change the prediction: always where free
-/// air tells of the machine, or no machine was recorded; without, where digs left out are predicted
-/// better.
+/// Writes confirmed: whether what the search chose may change the prediction. It may where there is
+/// free air, or no machine was recorded; else only where left-out digs are predicted better.
 void dig_trace_confirm_without_air(struct dig_trace_work *w);
 
 /// Gives up the names of what the soil shows while free air shows a machine that no effect

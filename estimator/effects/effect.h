@@ -1,11 +1,11 @@
-// What an effect that a model of digging may lack is and does. One file each; core/effect.h lists
-// them.
+// An effect of the catalogue: its parameters with unit, bounds and prior, and what it does to a
+// reading or to a curve. One file each; core/effect.h lists them.
 //
 // An effect of the machine writes into a struct dig_correction, one of the soil adds to a curve. A
-// soil effect that a bed was dug with has templates (template.h): its parameter 0 is then their
-// magnitude, and it applies only where the set of effects holds it. What needs no bed is a factor
-// on the plain curve or a reduced form. Parameters stand in the order of the list wherever they are
-// an array; their names carry the unit and are what a model file and a report say.
+// soil effect with beds has templates (template.h): its parameter 0 is their magnitude, and it
+// applies only where the set of effects holds it. One without beds is a factor on the plain curve
+// or a reduced form. Parameters stand in the order of the list wherever they are an array. Their
+// names carry the unit and are those of model files and reports.
 
 #ifndef DIG_ESTIMATOR_EFFECTS_EFFECT_H
 #define DIG_ESTIMATOR_EFFECTS_EFFECT_H
@@ -26,7 +26,7 @@ struct dig_effect_parameter {
     double      absent; // the value at which it does nothing
     double      low, high;
     double      scale; // 1 sigma of the prior
-    bool        bent;  // shapes what the others make, and is nothing by itself
+    bool        bent;  // only changes the form of the others' effect; none by itself
 };
 
 /// In what the digs of one trajectory must differ for an effect to act on each otherwise. Its share

@@ -1,4 +1,4 @@
-// What a job folder is to compute: planned once, and the same in every submit after.
+// The plan of a job folder: made once, and the same in every submit after.
 
 #ifndef DIG_TOOLS_DIGTABLE_JOB_PLANNING_H
 #define DIG_TOOLS_DIGTABLE_JOB_PLANNING_H

@@ -1,4 +1,4 @@
-// How far the shards of a job folder are: by their files, by who holds them, by the queue.
+// State of the shards of a job folder: by their files, by who holds them, by the queue.
 
 #ifndef DIG_TOOLS_DIGTABLE_JOB_STATE_H
 #define DIG_TOOLS_DIGTABLE_JOB_STATE_H

@@ -1,4 +1,4 @@
-// Where messages come from: LCM, or a log that is played at a speed.
+// Source of messages: LCM, or a log that is played at a speed.
 
 #ifndef DIG_TOOLS_DIGWATCH_SOURCE_H
 #define DIG_TOOLS_DIGWATCH_SOURCE_H

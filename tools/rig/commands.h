@@ -1,4 +1,4 @@
-// What digrig makes of a run of the machine: a machine recording, or a run on real buses, in time.
+// Outputs of digrig for a run of the machine: a machine recording, or a run on real buses, in time.
 
 #ifndef DIG_TOOLS_RIG_COMMANDS_H
 #define DIG_TOOLS_RIG_COMMANDS_H
