@@ -1,4 +1,4 @@
-// What the machine leaves of free air's equations, and how it does with corrections.
+// Residuals of free air's equations, of the machine as in its file and corrected.
 
 #include "closed_loop/air/machine_air.h"
 #include "estimator/wrench/balance.h"

@@ -1,4 +1,4 @@
-// What a recording says by itself, before anything is balanced.
+// Checks of a recording by itself, before any balance: times, gaps, stuck sensors, ranges.
 
 #include "closed_loop/check/machine_check_private.h"
 #include "core/linkage.h"

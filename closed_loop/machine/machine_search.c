@@ -1,5 +1,5 @@
-// What free air shows that is missing of the machine: its equations, and what is reported of the
-// effects that explain them.
+// Traces effects of the machine in free air: sets up its equations, and reports the effects that
+// explain them.
 
 #include "closed_loop/machine/machine_search.h"
 #include "closed_loop/machine/machine_noise.h"

@@ -1,5 +1,5 @@
-// How far each row of free air can be trusted: where effects explain much of it, the form of what
-// they explain may be wrong, and a rod that stands may be held.
+// Trust of each row of free air: where effects explain much of it, their form may be wrong, and a
+// rod that stands may be held by friction.
 
 #include "closed_loop/machine/machine_lines.h"
 #include "estimator/effects/effect.h"

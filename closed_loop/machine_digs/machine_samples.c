@@ -1,5 +1,5 @@
-// Which samples of a machine's recording can be used: those in time with all angles, the pressures
-// of the bucket's drive, and of every other drive that most of them tell.
+// Selects the samples of a machine's recording that can be used: in time, with all angles, and with
+// the pressures of the bucket's drive and of every other drive that half of the samples have.
 
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "core/sample.h"

@@ -1,12 +1,11 @@
-// Whether digs drift from first to last as wear is taken to, by the same share from one to the
-// next.
+// Tests whether digs drift as by wear, by the same share from one to the next.
 //
-// Of every dig the size that it has over the gravel's without wear, f = <y, m> / <m, m>, with a
-// variance of 1 / <m, m>, is fitted by a line in the digs' order, by a parabola, and by sizes in no
-// order, whose variance is whatever they have; each with a number of its own for every trajectory,
-// for whatever its digs share. A strength that grows and comes to rest, or steps once, is a drift,
-// too, but of something else than a tooth, and a line through it overshoots the next dig. Where one
-// dig is deeper, or of another gravel, a line leads nothing but digs that are all alike.
+// The size of every dig over the gravel's without wear is f = <y, m> / <m, m>, with a variance of
+// 1 / <m, m>. It is fitted by a line in the digs' order, by a parabola, and by sizes in no order,
+// of any variance; each with a constant for every trajectory. A strength that grows and comes to
+// rest, or steps once, is a drift, too, but of something else than a tooth, and a line through it
+// overshoots the next dig. Where one dig is deeper, or of another gravel, a line leads digs that
+// are all alike, but not sizes in no order.
 
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/search/search_work.h"

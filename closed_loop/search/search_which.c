@@ -1,4 +1,4 @@
-// Which effect, or which two: the best single effect, pairs beside it, and whether to believe them.
+// Chooses one effect or two: the best single effect, pairs with it, and the rules for a name.
 
 #include "closed_loop/search/cross_validation.h"
 #include "closed_loop/search/search_work.h"

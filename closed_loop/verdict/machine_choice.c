@@ -1,4 +1,4 @@
-// What of the machine is missing, by free air and the digs together.
+// Chooses the effects of the machine by free air and the digs together.
 //
 // The answers of free air (closed_loop/machine/machine_side.h), none, and "something without a
 // name" compete by one evidence: free air's, plus that of the digs fitted with what free air leaves

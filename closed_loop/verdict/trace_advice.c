@@ -1,4 +1,4 @@
-// What a trace says to people: the ground that effects are explained in, and what to do next.
+// Advice of a trace for people: the ground in which effects are explained, and what to do next.
 
 #include "closed_loop/verdict/trace_work.h"
 #include "estimator/effects/effect.h"

@@ -1,7 +1,7 @@
-// What sensors are off by for as long as a bin of a dig lasts, as a filtered load cell or an arm
-// that trembles is. Rows do not tell it, as grains move as slowly. But it is as large where a dig
-// hardly resists, it is rough along the dig, and no two digs have it alike: beds do not scatter so,
-// and no effect does. How likely the digs are tells it.
+// Estimates noise of sensors that is correlated over a bin of a dig, as of a filtered load cell or
+// an arm that trembles. Rows do not show it, as grains move as slowly. But it is as large where a
+// dig hardly resists, it is rough along the dig, and no two digs have the same: neither scatter of
+// beds nor any effect is like that. So the likelihood of the digs shows it.
 
 #include "closed_loop/search/search_work.h"
 #include "closed_loop/verdict/trace_work.h"
