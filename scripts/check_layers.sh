@@ -58,7 +58,7 @@ closed_loop/fit        | hypothesis posterior steps whitened_digs
 closed_loop/air        | machine_air
 closed_loop/machine    machine_side | machine_fit machine_lines machine_noise
 closed_loop/check      machine_check
-closed_loop/search     | cross_validation portmanteau search search_work unlisted
+closed_loop/search     | cross_validation search search_work unlisted
 closed_loop/accuracy   coverage score | decision effect_size judge trend
 closed_loop/verdict    trace | residuals
 closed_loop/design     design

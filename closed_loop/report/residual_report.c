@@ -81,16 +81,6 @@ static void put_trend(FILE *const to, const char *const channel, const enum dig_
     (void)fputs("]}", to);
 }
 
-static void put_white(FILE *const to, const char *const name,
-                      const struct dig_whiteness *const white)
-{
-    dig_json_put(to,
-                 "%s: {\"statistic\": %g, \"low\": %g, \"high\": %g, \"expected\": %g, \"p\": %g, "
-                 "\"digs\": %zu}",
-                 name, white->statistic, white->low, white->high, white->expected, white->p,
-                 white->digs);
-}
-
 void dig_residuals_json(const struct dig_trace *const trace, FILE *const to)
 {
     assert(trace != NULL && to != NULL);
@@ -110,14 +100,5 @@ void dig_residuals_json(const struct dig_trace *const trace, FILE *const to)
             any = true;
         }
     }
-    (void)fputs("],\n \"whiteness\": ", to);
-    if (residuals == NULL) {
-        (void)fputs("null,\n", to);
-        return;
-    }
-    (void)fputs("{", to);
-    put_white(to, "without", &residuals->without);
-    (void)fputs(", ", to);
-    put_white(to, "with", &residuals->with);
-    (void)fputs("},\n", to);
+    (void)fputs("],\n", to);
 }

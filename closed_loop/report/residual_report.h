@@ -17,8 +17,8 @@ const char *dig_residuals_use_name(enum dig_use use);
 void dig_residuals_approach_text(const struct dig_approach *taken_off,
                                  char                       text[DIG_APPROACH_TEXT_SIZE]);
 
-/// The members "residuals", "residual_against" and "whiteness" of the object, each with a comma and
-/// a line feed. Not worked out: empty lists and null.
+/// The members "residuals" and "residual_against" of the object, each with a comma and a line feed.
+/// Not worked out: empty lists.
 void dig_residuals_json(const struct dig_trace *trace, FILE *to);
 
 /// A table dig by dig, one of the slopes, pictures over path and depth. Nothing where they were not

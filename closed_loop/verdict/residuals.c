@@ -128,20 +128,6 @@ static void fill_trends(const struct dig_trace_work *const w,
     }
 }
 
-// Where nothing was chosen, both are of the plain fit.
-static void fill_whiteness(const struct dig_trace_work *const w,
-                           struct dig_residuals *const        residuals)
-{
-    const struct dig_fitted *const plain  = &w->search->plain;
-    const struct dig_fitted *const chosen = &w->search->chosen;
-    const size_t                   draws  = w->settings->bootstraps - 1; // p in whole shares
-    const uint64_t                 seed   = w->settings->seed;
-    residuals->without                    = dig_portmanteau_judge(w->batch, plain, draws, seed);
-    residuals->with                       = fabs(chosen->misfit - plain->misfit) > 0.0
-                                                ? dig_portmanteau_judge(w->batch, chosen, draws, seed)
-                                                : residuals->without;
-}
-
 void dig_residuals_make(const struct dig_trace_work *const w,
                         const struct dig_trace_curves      curves[],
                         struct dig_residuals *const        residuals)
@@ -155,5 +141,4 @@ void dig_residuals_make(const struct dig_trace_work *const w,
         dig_residual_of(w->set, &w->measured[i], &curves[i].after, dig->after);
     }
     fill_trends(w, curves, residuals);
-    fill_whiteness(w, residuals);
 }

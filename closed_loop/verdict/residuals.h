@@ -1,12 +1,11 @@
-// Residuals of a campaign's digs, for people and programs: dig by dig, over the state of the dig,
-// and whether they are white. Nothing is decided by them.
+// Residuals of a campaign's digs, for people and programs: dig by dig, and over the state of the
+// dig. Nothing is decided by them.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
 #define DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
 
 #include "closed_loop/accuracy/trend.h"
 #include "closed_loop/recordings/regressors.h"
-#include "closed_loop/search/portmanteau.h"
 #include "closed_loop/verdict/trace_work.h"
 
 /// Of one channel in one part of a dig; all NaN where nothing was measured. relative adds up in
@@ -37,9 +36,6 @@ struct dig_residuals {
     // (of forces: of their resultant). known: any dig does.
     bool             known[DIG_FORCE_CHANNELS];
     struct dig_trend trend[DIG_FORCE_CHANNELS][DIG_REGRESSORS];
-    // Of the fitted digs, corrected for machine effects: by the gravel alone, and with what was
-    // named of the soil.
-    struct dig_whiteness without, with;
 };
 
 /// "moment_Nm", "fx_N", "fz_N".

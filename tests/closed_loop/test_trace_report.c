@@ -84,8 +84,6 @@ static void fill_residuals(struct dig_residuals *const r)
             .bin         = { { 0.25, -0.125, 0.0625, 2 }, { 0.75, 0.125, (double)NAN, 1 } },
         };
     }
-    r->without = (struct dig_whiteness){ 2, 24.5, 20.0, 30.0, 9.0, 0.005 };
-    r->with    = (struct dig_whiteness){ 2, 8.5, 8.0, 9.0, 9.25, 0.5 };
 }
 
 // On the heap: the curves are large.
@@ -210,7 +208,6 @@ TEST(no_effect_is_the_verdict_none_and_no_holdout_is_null)
     expect(text, "error_after.holdout", "null");
     expect(text, "significant", "false");
     expect(text, "no_air", "false");
-    expect(text, "whiteness", "null");
     assert_contains(text, "\"residuals\": [],\n \"residual_against\": [],");
     free(text);
     trace.no_air      = true;
@@ -396,7 +393,6 @@ TEST(the_page_stands_alone_and_draws_every_dig)
     assert_contains(
         page, "<th>dig &lt;1&gt;.csv<br><span class=muted>identify</span></th><td>moment</td><td>"
               "2.5</td>");
-    assert_contains(page, "it is not white");
     assert_contains(page, "<tr><th>speed</th><td>0.38</td><td>0.002</td></tr>");
     assert_contains(page, "<tr><th>pass</th><td>–</td><td>–</td></tr>");
     check_page_stands_alone(page);
