@@ -116,6 +116,25 @@ trace noisy_obstacle
 check "a rock in the way is named beside noise" [ "$(verdict noisy_obstacle)" = '"obstacle"' ]
 data=$plain
 
+# One bed recorded four times tells no more than once, and what it has of its own is no effect.
+mkdir "$work/repeated" "$work/smooth"
+for seed in 1 2 3 4; do
+    for trajectory in simpleA actual; do
+        ln -s "$data/mu0.4_mur0.4_rho2000_seed1__$trajectory.csv" "$work/repeated/repeated_seed${seed}__$trajectory.csv"
+    done
+done
+data=$work/repeated
+trace repeated
+check "one bed recorded four times: nothing is missing" [ "$(verdict repeated)" = '"none"' ]
+
+# Grains without rolling friction resist less than any gravel of the table.
+for dig in tests/data/reference/mu0.5_mur0.0_rho2500__*.csv; do ln -s "$PWD/$dig" "$work/smooth/smooth_seed1__${dig##*__}"; done
+data=$work/smooth
+trace smooth
+check "a gravel beyond the table is no effect" [ "$(verdict smooth)" = '"none"' ]
+check "... and the table is said to lack it" grep -q "the gravel lies beyond the table" "$work/smooth.txt"
+data=$plain
+
 # By a force sensor whose filter lags, no soil is named.
 lagging() { # GRAVEL SECONDS: its beds, as lagging_GRAVEL into $work/lagging
     mkdir -p "$work/lagging"
