@@ -69,8 +69,7 @@ static const struct dig_command commands[] = {
       "digloop check my.yaml air.lcm --html check.html --json check.json\n" },
     { "design", "TABLE.sqlite [OPTION]...",
       "Tells which simple dig of the table tells most about the gravel.",
-      "Also which dig tells effects apart, and whether digs simulated with the table's own scatter "
-      "confirm it.",
+      "Digs simulated with the table's own scatter confirm it, or not.",
       "digloop design tables/product.sqlite\n" },
 };
 
@@ -96,7 +95,7 @@ static const struct dig_option known[] = {
       INTO(approach.attack_rad), -45.0, 45.0, "deg" },
     { "output", "CURVE.csv", " predict ", "also write the predicted curve", INTO(out),
       .letter = 'o', .writes = true },
-    { "effects", "EFFECTS.sqlite", " trace design ",
+    { "effects", "EFFECTS.sqlite", " trace ",
       "beds that hold effects of the soil (default: TABLE_effects.sqlite beside the table)",
       INTO(effects) },
     { "json", NULL, " identify predict design ", "the result as JSON on standard output",

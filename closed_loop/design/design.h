@@ -1,21 +1,18 @@
-// Ranks simple digs by their information on the gravel, and by the effects that they tell apart,
-// from the table's means and the scatter of its packings, before anything is dug.
+// Ranks simple digs by their information on the gravel, from the table's means and the scatter of
+// its packings, before anything is dug.
 //
 //   information = 1/2 log2 det(1 + J' C^-1 J / 3)   bits
-//   sigmas      = sqrt(min over g of (d - J g)' C^-1 (d - J g) + 3 g' g)
 //
 // J: derivative of one dig's features by the gravel's place (-1 … 1 on each axis, closed_loop/
-// response_surface.h); C: covariance of one dig and of the table's mean; d: what an effect adds;
-// 1/3 is the variance of a place of which nothing is known. Averages (medians for sigmas) over
-// gravels of the table. Linear theory; the simulation beside it is not.
+// response_surface.h); C: covariance of one dig and of the table's mean; 1/3 is the variance of a
+// place of which nothing is known. Averages over gravels of the table. Linear theory; the
+// simulation beside it is not. What tells effects apart a trace says of the digs at hand.
 
 #ifndef DIG_CLOSED_LOOP_DESIGN_DESIGN_H
 #define DIG_CLOSED_LOOP_DESIGN_DESIGN_H
 
 #include "closed_loop/model/response_surface.h"
 #include "closed_loop/model/scatter.h"
-#include "closed_loop/model/soil.h"
-#include "core/effect.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,12 +28,6 @@ struct dig_design_dig {
     double sd[DIG_AXES]; // 1 sigma left of an axis, as a share of knowing nothing (moment)
     size_t partner;      // the second dig that adds most, itself perhaps …
     double bits_partner; // … and what both tell (moment)
-    // Effects, with both forces measured, at half of the largest magnitude in the table of effects.
-    bool   tells[DIG_EFFECTS];
-    double sigmas[DIG_EFFECTS];  // one dig is away from every plain gravel
-    size_t pairs, apart;         // of effects, and how many of them differ by two sigmas or more
-    enum dig_effect_id close[2]; // the pair hardest to tell apart …
-    double             close_sigmas; // … and by how much it differs
     // Simulated, moment alone: rms error of the gravel's place after one dig over that of knowing
     // nothing, by axis and over all; rms relative error of the target's moment predicted with it.
     double error_axis[DIG_AXES];
@@ -58,11 +49,10 @@ struct dig_design {
     bool   confirmed;
 };
 
-/// Computes it in a second or two with 400 draws, on 1 MB of stack. soil NULL: nothing about
-/// effects. DIG_EINVAL: no simple trajectory; DIG_ENOMEM. Writes *design on success only.
+/// Computes it in a second or two with 400 draws, on 1 MB of stack. DIG_EINVAL: no simple
+/// trajectory; DIG_ENOMEM. Writes *design on success only.
 DIG_MUST_CHECK enum dig_status dig_design_run(const struct dig_response_surface *surface,
-                                              const struct dig_scatter          *scatter,
-                                              const struct dig_soil *soil, size_t draws,
+                                              const struct dig_scatter *scatter, size_t draws,
                                               uint64_t seed, struct dig_design *design);
 
 #endif // DIG_CLOSED_LOOP_DESIGN_DESIGN_H

@@ -1,4 +1,4 @@
-#include "closed_loop/design/design_view.h"
+#include "closed_loop/design/design_simulate.h"
 
 #include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/dense.h"

@@ -8,44 +8,9 @@ static void put_row(FILE *const to, const struct dig_design *const design,
                     const struct dig_curve_set *const set, const size_t t)
 {
     const struct dig_design_dig *const dig = &design->dig[t];
-    (void)fprintf(to, "  %-12s %6.2f %8.2f %6.2f %6.2f %6.2f %8.2f %8.3f", set->trajectory[t].name,
-                  dig->bits, dig->bits_wrench, dig->sd[0], dig->sd[1], dig->sd[2], dig->error,
-                  dig->target_error);
-    if (dig->pairs > 0) {
-        (void)fprintf(to, "   %zu of %zu; hardest %s and %s, %.1f sigma\n", dig->apart, dig->pairs,
-                      dig_effect_name(dig->close[0]), dig_effect_name(dig->close[1]),
-                      dig->close_sigmas);
-    } else {
-        (void)fputs("   -\n", to);
-    }
-}
-
-static void put_effects(FILE *const to, const struct dig_design *const design,
-                        const struct dig_curve_set *const set)
-{
-    bool any = false;
-    for (int e = 0; e < DIG_EFFECTS; e++) {
-        bool has = false;
-        for (size_t t = 0; t < design->digs; t++) {
-            if (!design->dig[t].tells[e]) {
-                continue;
-            }
-            if (!any) {
-                (void)fputs("\nhow far half of an effect's largest magnitude is from every plain "
-                            "gravel, one dig with its forces, sigmas\n",
-                            to);
-            }
-            if (!has) {
-                (void)fprintf(to, "  %-16s", dig_effect_name((enum dig_effect_id)e));
-            }
-            (void)fprintf(to, "  %s %.1f", set->trajectory[t].name, design->dig[t].sigmas[e]);
-            any = true;
-            has = true;
-        }
-        if (has) {
-            (void)fputs("\n", to);
-        }
-    }
+    (void)fprintf(to, "  %-12s %6.2f %8.2f %6.2f %6.2f %6.2f %8.2f %8.3f\n",
+                  set->trajectory[t].name, dig->bits, dig->bits_wrench, dig->sd[0], dig->sd[1],
+                  dig->sd[2], dig->error, dig->target_error);
 }
 
 void dig_design_text(const struct dig_design *const design, const struct dig_curve_set *const set,
@@ -54,10 +19,10 @@ void dig_design_text(const struct dig_design *const design, const struct dig_cur
     assert(design != NULL && set != NULL && to != NULL && design->ranked > 0);
     (void)fputs("bits on the gravel of one dig, by its moment and with its forces; 1 sigma left of "
                 "friction,\nrolling and density as a share of knowing nothing; the same over all "
-                "three, simulated; error of\nthe predicted target; pairs of effects told apart\n\n",
+                "three, simulated; error of\nthe predicted target\n\n",
                 to);
-    (void)fprintf(to, "  %-12s %6s %8s %6s %6s %6s %8s %8s   %s\n", "simple dig", "bits", "+forces",
-                  "fric", "roll", "dens", "left", "target", "effects");
+    (void)fprintf(to, "  %-12s %6s %8s %6s %6s %6s %8s %8s\n", "simple dig", "bits", "+forces",
+                  "fric", "roll", "dens", "left", "target");
     for (size_t i = 0; i < design->ranked; i++) {
         put_row(to, design, set, design->rank[i]);
     }
@@ -67,8 +32,6 @@ void dig_design_text(const struct dig_design *const design, const struct dig_cur
             put_row(to, design, set, t);
         }
     }
-    put_effects(to, design, set);
-
     const size_t best = design->rank[0];
     (void)fprintf(to, "\nrecommended: %s; a second dig tells most along %s (%.2f bits together)\n",
                   set->trajectory[best].name, set->trajectory[design->dig[best].partner].name,
@@ -107,25 +70,8 @@ static void put_dig(FILE *const to, const struct dig_design *const design,
                  dig->bits_wrench, set->trajectory[dig->partner].name, dig->bits_partner);
     put_axes(to, "sd_left", dig->sd);
     put_axes(to, "simulated_left", dig->error_axis);
-    dig_json_put(to,
-                 ", \"simulated_left_all\": %g, \"simulated_target_error\": %g,\n"
-                 "   \"effects\": {",
-                 dig->error, dig->target_error);
-    bool first = true;
-    for (int e = 0; e < DIG_EFFECTS; e++) {
-        if (dig->tells[e]) {
-            dig_json_put(to, first ? "%s: %g" : ", %s: %g", dig_effect_name((enum dig_effect_id)e),
-                         dig->sigmas[e]);
-            first = false;
-        }
-    }
-    dig_json_put(to, "}, \"pairs\": %zu, \"pairs_apart\": %zu", dig->pairs, dig->apart);
-    if (dig->pairs > 0) {
-        dig_json_put(to, ", \"hardest\": [%s, %s], \"hardest_sigmas\": %g",
-                     dig_effect_name(dig->close[0]), dig_effect_name(dig->close[1]),
-                     dig->close_sigmas);
-    }
-    (void)fputs("}", to);
+    dig_json_put(to, ", \"simulated_left_all\": %g, \"simulated_target_error\": %g}", dig->error,
+                 dig->target_error);
 }
 
 void dig_design_json(const struct dig_design *const design, const struct dig_curve_set *const set,

@@ -36,7 +36,7 @@ static void drop(struct bench *const b)
 static struct dig_design run(const struct bench *const b, const size_t draws)
 {
     struct dig_design design;
-    assert_int_equal(dig_design_run(b->surface, b->scatter, NULL, draws, 3, &design), DIG_OK);
+    assert_int_equal(dig_design_run(b->surface, b->scatter, draws, 3, &design), DIG_OK);
     return design;
 }
 
@@ -150,7 +150,7 @@ TEST(a_table_without_a_simple_dig_is_refused)
         b.set->trajectory[t].phases = DIG_DESIGN_SIMPLE_PHASES + 1;
     }
     struct dig_design design = { .digs = 77 };
-    assert_int_equal(dig_design_run(b.surface, b.scatter, NULL, 400, 1, &design), DIG_EINVAL);
+    assert_int_equal(dig_design_run(b.surface, b.scatter, 400, 1, &design), DIG_EINVAL);
     assert_int_equal(design.digs, 77);
     drop(&b);
 }

@@ -12,7 +12,7 @@ static struct dig_design design_of(const char *const path, const uint64_t seed,
 {
     struct dig_design design;
     shipped_load(path, NULL);
-    assert_int_equal(dig_design_run(surface, scatter, NULL, 1200, seed, &design), DIG_OK);
+    assert_int_equal(dig_design_run(surface, scatter, 1200, seed, &design), DIG_OK);
     memcpy(recommended, set->trajectory[design.rank[0]].name, DIG_NAME_SIZE);
     memcpy(reference, set->trajectory[design.reference].name, DIG_NAME_SIZE);
     (void)shipped_teardown(NULL);

@@ -138,7 +138,7 @@ check "... model" refuses none.json "No such file" -- "$BIN/digloop" identify "$
 check "... identity" refuses none.json "No such file" -- "$BIN/digloop" predict "$table" --identified "$work/none.json" --trajectory actual -o "$work/never"
 check "... dig to compare with" refuses none.csv "No such file" -- \
     "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual --measured "$work/none.csv" -o "$work/never"
-check "... table of effects" refuses none.sqlite "No such file" -- "$BIN/digloop" design "$table" --effects "$work/none.sqlite"
+check "... table of effects" refuses none.sqlite "No such file" -- "$BIN/digloop" trace "$table" "$work" --effects "$work/none.sqlite"
 check "a folder is no recording" refuses "$work: no regular file" -- "$BIN/digloop" identify "$table" "$work"
 "$BIN/digloop" predict "$table" --identified "$work/id.json" --trajectory actual -o "$work/no/folder.csv" >"$work/out" 2>"$work/err"
 check "a file that cannot be written is a failure of the work" eval '[ $? = 1 ] && grep -q "no/folder.csv" "$work/err"'

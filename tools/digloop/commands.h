@@ -6,7 +6,6 @@
 #include "closed_loop/verdict/trace.h"
 #include "core/approach.h"
 #include "core/curve.h"
-#include "core/entry_set.h"
 #include "core/error.h"
 
 #include <stdbool.h>
@@ -48,18 +47,11 @@ DIG_MUST_CHECK enum dig_status digloop_check(const struct digloop_options *optio
 /// Fills trace->command where the verdict holds effects of the soil that beds can hold: shell lines
 /// that write a grid and run digtable on it, for beds of the gravel found with these effects in
 /// them, in the table of effects beside the table. Nothing without free air, or where a magnitude
-/// is none that a bed can hold. effects: of digloop_load_effects(). *error as files have it.
+/// is none that a bed can hold. effects: that table's
+/// path. *error as files have it.
 DIG_MUST_CHECK enum dig_status digloop_next_table(const struct digloop_job *job,
                                                   const char *effects, size_t digs,
                                                   const struct dig_measured measured[],
                                                   struct dig_trace *trace, struct dig_error *error);
-
-/// The table of effects asked for, or the one beside the table, which path names, too, when there
-/// is none: then it says so on standard error and leaves *effects. Free with
-/// dig_entry_set_destroy().
-DIG_MUST_CHECK enum dig_status digloop_load_effects(const struct digloop_job *job,
-                                                    char                   path[DIGLOOP_PATH_SIZE],
-                                                    struct dig_entry_set **effects,
-                                                    struct dig_error      *error);
 
 #endif // DIG_TOOLS_DIGLOOP_COMMANDS_H

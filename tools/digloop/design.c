@@ -3,39 +3,17 @@
 #include "closed_loop/design/design.h"
 
 #include "closed_loop/report/design_report.h"
-#include "tables/load.h"
 #include "tools/digloop/commands.h"
 
 #include <stdlib.h>
 
 enum { DRAWS = 400, SEED = 1 };
 
-// What the effects add, where a table of them is given or lies beside the table.
-static enum dig_status make_soil(const struct digloop_job *const          job,
-                                 const struct dig_response_surface *const surface,
-                                 const struct dig_scatter *const          scatter,
-                                 struct dig_soil **const soil, struct dig_error *const error)
-{
-    char                  path[DIGLOOP_PATH_SIZE];
-    struct dig_entry_set *effects = NULL;
-    enum dig_status       status  = digloop_load_effects(job, path, &effects, error);
-    if (status == DIG_OK) {
-        status = dig_soil_create(surface, effects, scatter, soil);
-        if (status != DIG_OK) {
-            (void)dig_error_set(error, status, "%s: %s", job->options->table,
-                                dig_status_str(status));
-        }
-    }
-    dig_entry_set_destroy(effects);
-    return status;
-}
-
 enum dig_status digloop_design(const struct digloop_job *const job, struct dig_error *const error)
 {
     struct dig_response_surface *const surface = calloc(1, sizeof *surface);
     struct dig_design *const           design  = calloc(1, sizeof *design);
     struct dig_scatter                *scatter = NULL;
-    struct dig_soil                   *soil    = NULL;
     enum dig_status status = surface != NULL && design != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
         status = dig_response_surface_fit(job->set, surface);
@@ -46,13 +24,10 @@ enum dig_status digloop_design(const struct digloop_job *const job, struct dig_e
         goto done;
     }
     status = dig_scatter_measure(job->options->table, surface, &scatter, error);
-    if (status == DIG_OK) {
-        status = make_soil(job, surface, scatter, &soil, error);
-    }
     if (status != DIG_OK) {
         goto done;
     }
-    status = dig_design_run(surface, scatter, soil, DRAWS, SEED, design);
+    status = dig_design_run(surface, scatter, DRAWS, SEED, design);
     if (status != DIG_OK) {
         (void)dig_error_set(error, status, "%s: holds no simple trajectory, expected one or more",
                             job->options->table);
@@ -63,7 +38,6 @@ enum dig_status digloop_design(const struct digloop_job *const job, struct dig_e
     }
 done:
     dig_scatter_destroy(scatter);
-    free(soil);
     free(design);
     free(surface);
     return status;

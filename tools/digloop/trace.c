@@ -39,10 +39,12 @@ static void say_without_beds(const char *const path)
     (void)fputs("), and anything else is \"unlisted\"\n", stderr);
 }
 
-enum dig_status digloop_load_effects(const struct digloop_job *const job,
-                                     char                            path[const DIGLOOP_PATH_SIZE],
-                                     struct dig_entry_set **const    effects,
-                                     struct dig_error *const         error)
+// The table of effects asked for, or the one beside the table, which path names, too, when there is
+// none: then it says so and leaves *effects.
+static enum dig_status load_effects(const struct digloop_job *const job,
+                                    char                            path[const DIGLOOP_PATH_SIZE],
+                                    struct dig_entry_set **const    effects,
+                                    struct dig_error *const         error)
 {
     struct stat found;
     if (job->options->effects != NULL) {
@@ -151,7 +153,7 @@ enum dig_status digloop_trace(const struct digloop_job *const job, struct dig_er
     struct dig_trace       *trace    = calloc(1, sizeof *trace);
     enum dig_status         status   = trace != NULL ? DIG_OK : DIG_ENOMEM;
     if (status == DIG_OK) {
-        status = digloop_load_effects(job, path, &effects, error);
+        status = load_effects(job, path, &effects, error);
     }
     if (status == DIG_OK) {
         status = digloop_campaign_load(job, &campaign, error);
