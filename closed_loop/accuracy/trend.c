@@ -1,21 +1,15 @@
 #include "closed_loop/accuracy/trend.h"
 
 #include "closed_loop/recordings/measured.h"
-#include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
-
-enum { DRAWS = 999 };
 
 // Sums over points, x and y from an origin near them.
 struct sums {
     double n, x, y, xx, xy, yy;
 };
-
-static const struct sums none = { .n = 0.0 };
 
 static void add(struct sums *const to, const struct sums *const one)
 {
@@ -25,38 +19,6 @@ static void add(struct sums *const to, const struct sums *const one)
     to->xx += one->xx;
     to->xy += one->xy;
     to->yy += one->yy;
-}
-
-// NaN where x does not vary: range2 is what its square might be.
-static double slope_of(const struct sums *const s, const double range2)
-{
-    const double within = s->xx - s->x * s->x / s->n;
-    return within > 1e-9 * range2 * s->n ? (s->xy - s->x * s->y / s->n) / within : (double)NAN;
-}
-
-static void bootstrap(const size_t digs, const struct sums one[], const double range2,
-                      uint64_t seed, struct dig_trend *const trend)
-{
-    double drawn[DRAWS];
-    double below = 0.0;
-    double above = 0.0;
-    size_t n     = 0;
-    for (size_t d = 0; d < DRAWS; d++) {
-        struct sums sum = none;
-        for (size_t i = 0; i < digs; i++) {
-            add(&sum, &one[dig_chance_index(&seed, digs)]);
-        }
-        const double slope = slope_of(&sum, range2);
-        if (isfinite(slope)) {
-            drawn[n++] = slope;
-            below += slope <= 0.0 ? 1.0 : 0.0;
-            above += slope >= 0.0 ? 1.0 : 0.0;
-        }
-    }
-    if (n > DRAWS / 2) {
-        dig_chance_interval(n, drawn, &trend->low, &trend->high);
-        trend->p = fmin(1.0, 2.0 * (fmin(below, above) + 1.0) / ((double)n + 1.0));
-    }
 }
 
 static void fill_bin(const size_t digs, const struct dig_trend_dig dig[], const double from,
@@ -87,12 +49,12 @@ static void fill_bin(const size_t digs, const struct dig_trend_dig dig[], const 
     }
 }
 
-void dig_trend_fit(const size_t digs, const struct dig_trend_dig dig[], const uint64_t seed,
+void dig_trend_fit(const size_t digs, const struct dig_trend_dig dig[],
                    struct dig_trend *const trend)
 {
     assert(digs <= DIG_MEASURED_MAX && (digs == 0 || dig != NULL) && trend != NULL);
-    const double     gap  = (double)NAN;
-    struct dig_trend made = { .slope = gap, .low = gap, .high = gap, .correlation = gap, .p = gap };
+    const double     gap   = (double)NAN;
+    struct dig_trend made  = { .slope = gap, .correlation = gap };
     double           least = INFINITY;
     double           most  = -INFINITY;
     for (size_t i = 0; i < digs; i++) {
@@ -102,26 +64,23 @@ void dig_trend_fit(const size_t digs, const struct dig_trend_dig dig[], const ui
         }
     }
     if (most >= least) {
-        struct sums  one[DIG_MEASURED_MAX];
-        struct sums  all    = none;
+        struct sums  all    = { .n = 0.0 };
         const double range2 = (most - least) * (most - least);
         for (size_t i = 0; i < digs; i++) {
-            one[i] = none;
+            struct sums one = { .n = 0.0 };
             for (size_t k = 0; k < dig[i].points; k++) {
                 const double x = dig[i].x[k] - 0.5 * (least + most);
                 const double y = dig[i].y[k];
-                add(&one[i], &(struct sums){ 1.0, x, y, x * x, x * y, y * y });
+                add(&one, &(struct sums){ 1.0, x, y, x * x, x * y, y * y });
             }
-            add(&all, &one[i]);
+            add(&all, &one);
         }
-        made.slope = slope_of(&all, range2);
-
+        // Where x does not vary there is no slope: range2 is what its square might be.
         const double within_x = all.xx - all.x * all.x / all.n;
         const double within_y = all.yy - all.y * all.y / all.n;
-        made.correlation      = within_y > 0.0 ? made.slope * sqrt(within_x / within_y) : gap;
-        if (digs >= DIG_TREND_LEAST_DIGS && isfinite(made.slope)) {
-            bootstrap(digs, one, range2, seed, &made);
-        }
+        made.slope =
+            within_x > 1e-9 * range2 * all.n ? (all.xy - all.x * all.y / all.n) / within_x : gap;
+        made.correlation  = within_y > 0.0 ? made.slope * sqrt(within_x / within_y) : gap;
         const size_t bins = most > least ? DIG_TREND_BINS : 1;
         for (size_t b = 0; b < bins; b++) {
             const double width = (most - least) / (double)bins;

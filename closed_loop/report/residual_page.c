@@ -86,7 +86,7 @@ static void put_slopes(FILE *const to, const struct dig_residuals *const residua
     (void)fputs("<table><tr><th>against</th>", to);
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
         if (residuals->known[c]) {
-            (void)fprintf(to, "<th>%s: r</th><th>chance</th>", of_channel[c]);
+            (void)fprintf(to, "<th>%s: r</th>", of_channel[c]);
         }
     }
     (void)fputs("</tr>\n", to);
@@ -96,16 +96,14 @@ static void put_slopes(FILE *const to, const struct dig_residuals *const residua
         (void)fprintf(to, "<tr><th>%s</th>", name[s]);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             if (residuals->known[c]) {
-                dig_html_put(to, "<td>%.2f</td><td>%.3f</td>", residuals->trend[c][s].correlation,
-                             residuals->trend[c][s].p);
+                dig_html_put(to, "<td>%.2f</td>", residuals->trend[c][s].correlation);
             }
         }
         (void)fputs("</tr>\n", to);
     }
     (void)fputs("</table>\n<p class=muted>r: correlation of the residual with the state of the "
-                "dig, over the digs fitted to. Chance: of a slope as steep if there were none, "
-                "whole digs drawn anew. An error of the table is in all digs alike, and shows "
-                "here, too.</p>\n",
+                "dig, over the digs fitted to. An error of the table is in all digs alike, and "
+                "shows here, too.</p>\n",
                 to);
 }
 

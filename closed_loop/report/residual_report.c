@@ -68,10 +68,8 @@ static void put_trend(FILE *const to, const char *const channel, const enum dig_
                       const struct dig_trend *const trend)
 {
     dig_json_put(to,
-                 "{\"of\": %s, \"against\": %s, \"slope\": %g, \"low\": %g, \"high\": %g, "
-                 "\"correlation\": %g, \"p\": %g, \"bins\": [",
-                 channel, dig_regressors_name(state), trend->slope, trend->low, trend->high,
-                 trend->correlation, trend->p);
+                 "{\"of\": %s, \"against\": %s, \"slope\": %g, \"correlation\": %g, \"bins\": [",
+                 channel, dig_regressors_name(state), trend->slope, trend->correlation);
     for (size_t b = 0; b < trend->bins; b++) {
         (void)fputs(b == 0 ? "" : ", ", to);
         dig_json_put(to, "{\"at\": %g, \"mean\": %g, \"standard_error\": %g, \"digs\": %zu}",

@@ -123,7 +123,7 @@ static void fill_trends(const struct dig_trace_work *const w,
                 dig[i] = (struct dig_trend_dig){ p.n[i], &p.state[i][s][p.first[i]],
                                                  &p.y[i][p.first[i]] };
             }
-            dig_trend_fit(p.digs, dig, w->settings->seed, &residuals->trend[c][s]);
+            dig_trend_fit(p.digs, dig, &residuals->trend[c][s]);
         }
     }
 }

@@ -76,10 +76,7 @@ static void fill_residuals(struct dig_residuals *const r)
     for (int s = 0; s < DIG_REGRESSORS; s++) {
         r->trend[DIG_CHANNEL_MY_Nm][s] = (struct dig_trend){
             .slope       = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.5,
-            .low         = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.25,
-            .high        = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.75,
             .correlation = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.375,
-            .p           = s == DIG_REGRESSOR_PASS ? (double)NAN : 0.002,
             .bins        = 2,
             .bin         = { { 0.25, -0.125, 0.0625, 2 }, { 0.75, 0.125, (double)NAN, 1 } },
         };
@@ -393,8 +390,8 @@ TEST(the_page_stands_alone_and_draws_every_dig)
     assert_contains(
         page, "<th>dig &lt;1&gt;.csv<br><span class=muted>identify</span></th><td>moment</td><td>"
               "2.5</td>");
-    assert_contains(page, "<tr><th>speed</th><td>0.38</td><td>0.002</td></tr>");
-    assert_contains(page, "<tr><th>pass</th><td>–</td><td>–</td></tr>");
+    assert_contains(page, "<tr><th>speed</th><td>0.38</td></tr>");
+    assert_contains(page, "<tr><th>pass</th><td>–</td></tr>");
     check_page_stands_alone(page);
     free(page);
     drop(e);
