@@ -6,21 +6,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Sums over points, x and y from an origin near them.
-struct sums {
-    double n, x, y, xx, xy, yy;
-};
-
-static void add(struct sums *const to, const struct sums *const one)
-{
-    to->n += one->n;
-    to->x += one->x;
-    to->y += one->y;
-    to->xx += one->xx;
-    to->xy += one->xy;
-    to->yy += one->yy;
-}
-
 static void fill_bin(const size_t digs, const struct dig_trend_dig dig[], const double from,
                      const double to, const bool last, struct dig_trend *const trend)
 {
@@ -64,24 +49,26 @@ void dig_trend_fit(const size_t digs, const struct dig_trend_dig dig[],
         }
     }
     if (most >= least) {
-        struct sums  all    = { .n = 0.0 };
         const double range2 = (most - least) * (most - least);
+        double       n = 0.0, sx = 0.0, sy = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
         for (size_t i = 0; i < digs; i++) {
-            struct sums one = { .n = 0.0 };
             for (size_t k = 0; k < dig[i].points; k++) {
-                const double x = dig[i].x[k] - 0.5 * (least + most);
+                const double x = dig[i].x[k] - 0.5 * (least + most); // from near them
                 const double y = dig[i].y[k];
-                add(&one, &(struct sums){ 1.0, x, y, x * x, x * y, y * y });
+                n += 1.0;
+                sx += x;
+                sy += y;
+                xx += x * x;
+                xy += x * y;
+                yy += y * y;
             }
-            add(&all, &one);
         }
         // Where x does not vary there is no slope: range2 is what its square might be.
-        const double within_x = all.xx - all.x * all.x / all.n;
-        const double within_y = all.yy - all.y * all.y / all.n;
-        made.slope =
-            within_x > 1e-9 * range2 * all.n ? (all.xy - all.x * all.y / all.n) / within_x : gap;
-        made.correlation  = within_y > 0.0 ? made.slope * sqrt(within_x / within_y) : gap;
-        const size_t bins = most > least ? DIG_TREND_BINS : 1;
+        const double within_x = xx - sx * sx / n;
+        const double within_y = yy - sy * sy / n;
+        made.slope            = within_x > 1e-9 * range2 * n ? (xy - sx * sy / n) / within_x : gap;
+        made.correlation      = within_y > 0.0 ? made.slope * sqrt(within_x / within_y) : gap;
+        const size_t bins     = most > least ? DIG_TREND_BINS : 1;
         for (size_t b = 0; b < bins; b++) {
             const double width = (most - least) / (double)bins;
             fill_bin(digs, dig, least + width * (double)b, least + width * (double)(b + 1),
