@@ -47,7 +47,7 @@ offline_dem/kernel     | cell_grid clump_body contacts crew grains kernel neighb
 offline_dem/world      | bodies device grain_types obstacles ode_rocks ode_scene offloaded world
 offline_dem/dig        checked_pour dig input_checks variant
 offline_dem/sweep      sweep
-offline_dem/device     engine_cuda | device_grain device_surfaces
+offline_dem/device     engine_cuda | device_carry device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
 closed_loop/numeric    | dense levenberg vectors

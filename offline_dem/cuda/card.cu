@@ -3,12 +3,14 @@
 // clumps a third stands between them. No sum is shared between threads, so the same steps give the
 // same bits, and with -fmad=false those of tests/offline_dem/host_device.c, but for clumps.
 
+#include "offline_dem/device/device_carry.h"
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #define THREADS 64 // a block of the grid
 
@@ -26,6 +28,7 @@ enum {
     REFERENCE,
     PAIR_I,
     PAIR_J,
+    PAIR_START,
     LOAD_START,
     LOAD_INDEX,
     PAIR_LAW,
@@ -43,6 +46,8 @@ enum {
     ON_TOOL,
     CLUMP,
     MARGIN_FLAG, // state
+    ARRAYS_OF_VIEW,
+    WAS = ARRAYS_OF_VIEW, // of a move
     ARRAYS
 };
 
@@ -50,7 +55,7 @@ struct card {
     dig_device      device;
     dig_device_view host_view; // the processor's arrays
     dig_device_view view;   // the card's
-    array           at[ARRAYS];
+    array           at[ARRAYS], before[ARRAYS]; // and of the lists before
     uint32_t       *margin_flag; // pinned
     cudaStream_t    stream;
 };
@@ -75,6 +80,15 @@ __global__ void __launch_bounds__(THREADS)
         if (i < view.n) {
             dig_device_step_surfaces(&view, &step, i);
         }
+    }
+}
+
+__global__ void __launch_bounds__(THREADS)
+    carry_grains(const dig_device_view from, const dig_device_move move, const dig_device_view to)
+{
+    const uint32_t i = blockIdx.x * THREADS + threadIdx.x;
+    if (i < to.n) {
+        dig_device_carry_grain(&from, &move, &to, i);
     }
 }
 
@@ -142,25 +156,27 @@ cudaError_t place_const(card *const c, const int which, const size_t count, cons
     return e;
 }
 
-dig_status upload(dig_device *const device, const dig_device_view *const v)
+// Places a view's arrays on the card; where the state of grains and contacts is carried over, only
+// room for it.
+dig_status place_view(card *const c, const dig_device_view *const v, const bool carried)
 {
-    card *const            c    = card_of(device);
     dig_device_view *const w    = &c->view;
     const size_t           n    = v->n;
     const size_t           p    = v->pairs;
-    c->host_view                   = *v;
+    c->host_view                = *v;
     w->n                        = v->n;
     w->pairs                    = v->pairs;
     w->clumps                   = v->clumps;
-    w->walls                   = v->walls;
-    w->plates                  = v->plates;
-    w->surfaces                = v->surfaces;
+    w->walls                    = v->walls;
+    w->plates                   = v->plates;
+    w->surfaces                 = v->surfaces;
     const double     *at        = nullptr;
-    const cudaError_t e[ARRAYS] = {
+    const cudaError_t e[ARRAYS_OF_VIEW] = {
         place_const(c, TYPE_OF, n, v->type_of, &w->type_of),
         place_const(c, REFERENCE, 4 * n, &v->reference_m[0][0], &at),
-        place(c, PAIR_I, p, v->pair_i, &w->pair_i),
+        place(c, PAIR_I, p, carried ? nullptr : v->pair_i, &w->pair_i),
         place_const(c, PAIR_J, p, v->pair_j, &w->pair_j),
+        place_const(c, PAIR_START, n + 1, v->pair_start, &w->pair_start),
         place(c, LOAD_START, n + 1, v->load_start, &w->load_start),
         place(c, LOAD_INDEX, p, v->load_index, &w->load_index),
         place_const(c, PAIR_LAW, DIG_DEVICE_LAWS, v->pair_law, &w->pair_law),
@@ -168,24 +184,52 @@ dig_status upload(dig_device *const device, const dig_device_view *const v)
         place_const(c, TOOL_LAW, DIG_GRAIN_TYPES_MAX, v->tool_law, &w->tool_law),
         place_const(c, TYPE, DIG_GRAIN_TYPES_MAX, v->type, &w->type),
         place_const(c, SHAPE, v->shape == nullptr ? 0 : 1, v->shape, &w->shape),
-        place(c, MOTION, n, v->motion, &w->motion),
-        place(c, PAIR_HISTORY, p, v->pair_history, &w->pair_history),
-        place(c, TOUCHING, 2 * p, v->touching, &w->touching),
+        place(c, MOTION, n, carried ? nullptr : v->motion, &w->motion),
+        place(c, PAIR_HISTORY, p, carried ? nullptr : v->pair_history, &w->pair_history),
+        place(c, TOUCHING, 2 * p, carried ? nullptr : v->touching, &w->touching),
         place(c, PAIR_LOAD, 2 * p, static_cast<const dig_load *>(nullptr), &w->pair_load),
-        place(c, SURFACE_HISTORY, v->surfaces * n, v->surface_history, &w->surface_history),
-        place(c, SURFACE_MASK, n, v->surface_mask, &w->surface_mask),
+        place(c, SURFACE_HISTORY, v->surfaces * n, carried ? nullptr : v->surface_history,
+              &w->surface_history),
+        place(c, SURFACE_MASK, n, carried ? nullptr : v->surface_mask, &w->surface_mask),
         place(c, SURFACE_LOAD, n, static_cast<const dig_load *>(nullptr), &w->surface_load),
-        place(c, ON_TOOL, n, v->on_tool, &w->on_tool),
+        place(c, ON_TOOL, n, static_cast<const dig_wrench *>(nullptr), &w->on_tool),
         place(c, CLUMP, v->clumps, v->clump, &w->clump),
         place(c, MARGIN_FLAG, DIG_MARGIN_FLAGS, v->margin_flag, &w->margin_flag),
     };
     w->reference_m = reinterpret_cast<const double(*)[4]>(at);
-    for (int a = 0; a < ARRAYS; a++) {
+    for (int a = 0; a < ARRAYS_OF_VIEW; a++) {
         if (e[a] != cudaSuccess) {
             return status_of(e[a]);
         }
     }
-    return status_of(cudaStreamSynchronize(c->stream));
+    return status_of(cudaMemsetAsync(w->on_tool, 0, n * sizeof *w->on_tool, c->stream));
+}
+
+dig_status upload(dig_device *const device, const dig_device_view *const v)
+{
+    card *const      c      = card_of(device);
+    const dig_status status = place_view(c, v, false);
+    return status == DIG_OK ? status_of(cudaStreamSynchronize(c->stream)) : status;
+}
+
+dig_status relist(dig_device *const device, const dig_device_view *const v,
+                  const dig_device_move *const move)
+{
+    card *const           c    = card_of(device);
+    const dig_device_view from = c->view;
+    std::swap(c->at, c->before);
+    const dig_status status = place_view(c, v, true);
+    dig_device_move  there  = *move;
+    if (status != DIG_OK || v->n == 0) {
+        return status;
+    }
+    const cudaError_t e = place_const(c, WAS, v->n, move->was, &there.was);
+    if (e != cudaSuccess) {
+        return status_of(e);
+    }
+    carry_grains<<<blocks(v->n), THREADS, 0, c->stream>>>(from, there, c->view);
+    const cudaError_t launched = cudaPeekAtLastError();
+    return status_of(launched == cudaSuccess ? cudaStreamSynchronize(c->stream) : launched);
 }
 
 dig_status step(dig_device *const device, const dig_device_step *const s)
@@ -227,10 +271,14 @@ dig_status download(dig_device *const device, const bool all)
     const dig_device_view *const t = &c->host_view;
     const dig_device_view *const v = &c->view;
     const size_t                 n = v->n;
-    cudaError_t                  e = fetch(c, t->motion, v->motion, n);
-    e                              = e == cudaSuccess ? fetch(c, t->on_tool, v->on_tool, n) : e;
-    e                              = e == cudaSuccess ? fetch(c, t->clump, v->clump, v->clumps) : e;
-    e = e == cudaSuccess ? cudaMemsetAsync(v->on_tool, 0, n * sizeof *v->on_tool, c->stream) : e;
+    // Without plates nothing is on the tool.
+    const size_t on_tool = v->plates > 0 ? n : 0;
+    cudaError_t  e       = fetch(c, t->motion, v->motion, n);
+    e                    = e == cudaSuccess ? fetch(c, t->on_tool, v->on_tool, on_tool) : e;
+    e                    = e == cudaSuccess ? fetch(c, t->clump, v->clump, v->clumps) : e;
+    e                    = e == cudaSuccess
+                               ? cudaMemsetAsync(v->on_tool, 0, n * sizeof *v->on_tool, c->stream)
+                               : e;
     if (all) {
         e = e == cudaSuccess ? fetch(c, t->pair_history, v->pair_history, v->pairs) : e;
         e = e == cudaSuccess ? fetch(c, t->touching, v->touching, 2 * v->pairs) : e;
@@ -246,6 +294,7 @@ void destroy(dig_device *const device)
     card *const c = card_of(device);
     for (int a = 0; a < ARRAYS; a++) {
         (void)cudaFree(c->at[a].here);
+        (void)cudaFree(c->before[a].here);
     }
     (void)cudaFreeHost(c->margin_flag);
     (void)cudaStreamDestroy(c->stream);
@@ -277,10 +326,11 @@ extern "C" dig_device *dig_cuda_create(char why[], const size_t size)
     }
     c->device.name     = "graphics card";
     c->device.own      = c;
-    c->device.upload   = upload;
-    c->device.step     = step;
-    c->device.poll_margins   = poll_margins;
-    c->device.download = download;
-    c->device.destroy  = destroy;
+    c->device.upload       = upload;
+    c->device.relist       = relist;
+    c->device.step         = step;
+    c->device.poll_margins = poll_margins;
+    c->device.download     = download;
+    c->device.destroy      = destroy;
     return &c->device;
 }

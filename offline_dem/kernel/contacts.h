@@ -44,14 +44,6 @@ static inline struct dig_contact_history dig_contacts_history(const struct dig_c
     return (struct dig_contact_history){ h[0][c], h[1][c], h[2][c], h[3][c], h[4][c], h[5][c] };
 }
 
-/// With the sign -1: the history as the other grain has it.
-static inline struct dig_contact_history
-dig_contact_history_times(const struct dig_contact_history h, const double sign)
-{
-    return (struct dig_contact_history){ sign * h.sx_m,  sign * h.sy_m,  sign * h.sz_m,
-                                         sign * h.mx_Nm, sign * h.my_Nm, sign * h.mz_Nm };
-}
-
 /// Rounds the history in a list of single precision.
 static inline void dig_contacts_set_history(struct dig_contacts *const list, const size_t c,
                                             const struct dig_contact_history history)

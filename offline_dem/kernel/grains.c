@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -237,20 +238,37 @@ void dig_grains_end_single(struct dig_grains *const grains)
     grains->in_single = false;
 }
 
-bool dig_grains_are_sound(const struct dig_grains *const grains, const double dt_s)
+// Grains that a crew looks at.
+struct inspection {
+    const struct dig_grains *grains;
+    double                   dt_s;
+    atomic_bool              unsound;
+};
+
+static void inspect(void *const context, const size_t first, const size_t end)
 {
-    assert(grains != NULL);
-    for (size_t i = 0; i < grains->n; i++) {
+    struct inspection *const       inspection = context;
+    const struct dig_grains *const grains     = inspection->grains;
+    for (size_t i = first; i < end; i++) {
         const struct dig_motion m        = dig_grains_motion(grains, i);
         const double *const     x        = m.x_m;
         const double *const     v        = m.v_mps;
         const double *const     o        = m.w_radps;
         const double            radius_m = grains->type[grains->type_of[i]].radius_m;
-        const double            limit    = radius_m / dt_s;
+        const double            limit    = radius_m / inspection->dt_s;
         if (!(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < limit * limit) ||
             !isfinite(x[0] + x[1] + x[2] + o[0] + o[1] + o[2])) {
-            return false;
+            atomic_store(&inspection->unsound, true);
+            return;
         }
     }
-    return true;
+}
+
+bool dig_grains_are_sound(const struct dig_grains *const grains, const double dt_s,
+                          struct dig_crew *const crew)
+{
+    assert(grains != NULL);
+    struct inspection inspection = { .grains = grains, .dt_s = dt_s };
+    dig_crew_each(crew, grains->n, inspect, &inspection);
+    return !atomic_load(&inspection.unsound);
 }

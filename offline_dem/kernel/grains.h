@@ -163,6 +163,6 @@ static inline void dig_grains_add_load(struct dig_grains *const grains, const si
 
 /// False where a grain moves its own radius within a step, or has a coordinate that is not finite:
 /// the time step is too long, and further steps diverge.
-bool dig_grains_are_sound(const struct dig_grains *grains, double dt_s);
+bool dig_grains_are_sound(const struct dig_grains *grains, double dt_s, struct dig_crew *crew);
 
 #endif // DIG_OFFLINE_DEM_KERNEL_GRAINS_H

@@ -13,10 +13,12 @@
 #pragma GCC diagnostic ignored "-Wanalyzer-malloc-leak"
 #endif
 
-// The pairs that one member of a crew has found.
+// The pairs that one member of a crew has found, and what it has seen of its grains.
 struct finds {
+    double          radius_max_m, margin_min_m;
     uint32_t       *other;
     size_t          used, room;
+    size_t          reach;
     enum dig_status status;
 };
 
@@ -83,8 +85,13 @@ static enum dig_status search(const struct query *const q, const struct dig_cell
     const double        own_m = q->own.radius_m + q->own.margin_m;
     const double        far_m = q->own.radius_m + q->radius_max_m + 2.0 * q->own.margin_m;
     size_t              count = finds->used;
+    size_t              reach = finds->reach;
     ptrdiff_t           low[3];
     ptrdiff_t           high[3];
+    if (x[1] + far_m < g->low_m[1] ||
+        x[1] - far_m > g->low_m[1] + (double)g->count[1] * g->cell_m) {
+        return DIG_OK;
+    }
     for (int a = 0; a < 3; a++) {
         low[a]  = dig_cell_grid_along(g, a, x[a] - far_m);
         high[a] = dig_cell_grid_along(g, a, x[a] + far_m);
@@ -107,15 +114,19 @@ static enum dig_status search(const struct query *const q, const struct dig_cell
                 if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m &&
                     is_listed(q, y, d[1])) {
                     finds->other[count++] = y->grain;
+                    const size_t apart =
+                        y->grain < q->own.grain ? q->own.grain - y->grain : y->grain - q->own.grain;
+                    reach = apart > reach ? apart : reach;
                 }
             }
         }
     }
-    finds->used = count;
+    finds->used  = count;
+    finds->reach = reach;
     return DIG_OK;
 }
 
-// Searches around the grain, and around its images where y is periodic.
+// Searches around the grain, and around its images where y is periodic: most are out of reach.
 static enum dig_status search_images(struct query *const q, const struct dig_cell_grid *const g,
                                      const double period_m, struct finds *const finds)
 {
@@ -139,6 +150,23 @@ struct shared_search {
     struct finds            *finds; // [members]
     struct dig_neighbours   *list;
 };
+
+static void look_at_grains(void *const context, const size_t member)
+{
+    const struct shared_search *const s      = context;
+    const struct dig_grains *const    grains = s->grains;
+    const size_t                      end    = dig_crew_share(s->crew, grains->n, member + 1);
+    struct finds                      seen   = { .margin_min_m = INFINITY };
+    for (size_t i = dig_crew_share(s->crew, grains->n, member); i < end; i++) {
+        const double  radius_m    = grains->type[grains->type_of[i]].radius_m;
+        double *const reference_m = s->list->reference_m[i];
+        seen.radius_max_m         = radius_m > seen.radius_max_m ? radius_m : seen.radius_max_m;
+        seen.margin_min_m = s->margin_m[i] < seen.margin_min_m ? s->margin_m[i] : seen.margin_min_m;
+        memcpy(reference_m, grains->motion[i].x_m, 3 * sizeof(double));
+        reference_m[3] = s->margin_m[i];
+    }
+    s->finds[member] = seen;
+}
 
 static void order_by_cells(void *const context, const size_t first, const size_t end)
 {
@@ -188,18 +216,17 @@ static void place_share(void *const context, const size_t member)
 static enum dig_status find_pairs(struct shared_search *const s)
 {
     const size_t members = dig_crew_members(s->crew);
-    s->finds             = calloc(members, sizeof *s->finds);
-    if (s->finds == NULL) {
-        return DIG_ENOMEM;
-    }
-    s->finds[0].other = s->list->other;
-    s->finds[0].room  = s->list->room;
+    s->finds[0].other    = s->list->other;
+    s->finds[0].room     = s->list->room;
     dig_crew_run(s->crew, search_share, s);
     enum dig_status status = DIG_OK;
     size_t          found  = 0;
+    s->list->reach         = 0;
     for (size_t m = 0; m < members; m++) {
-        found += s->finds[m].used;
-        status = s->finds[m].status == DIG_OK ? status : s->finds[m].status;
+        const struct finds *const finds = &s->finds[m];
+        found += finds->used;
+        status         = finds->status == DIG_OK ? status : finds->status;
+        s->list->reach = finds->reach > s->list->reach ? finds->reach : s->list->reach;
     }
     status         = status == DIG_OK ? make_room(&s->finds[0], found) : status;
     s->list->other = s->finds[0].other;
@@ -211,7 +238,33 @@ static enum dig_status find_pairs(struct shared_search *const s)
     for (size_t m = 1; m < members; m++) {
         free(s->finds[m].other);
     }
-    free(s->finds);
+    return status;
+}
+
+// Cells as wide as the reach of a resting pair: most grains then search 27 cells.
+static enum dig_status build(struct shared_search *const s)
+{
+    const size_t n            = s->grains->n;
+    double       margin_min_m = INFINITY;
+    dig_crew_run(s->crew, look_at_grains, s);
+    for (size_t m = 0; m < dig_crew_members(s->crew); m++) {
+        s->radius_max_m = fmax(s->radius_max_m, s->finds[m].radius_max_m);
+        margin_min_m    = fmin(margin_min_m, s->finds[m].margin_min_m);
+    }
+    enum dig_status status =
+        dig_cell_grid_fill(s->grains, 2.0 * (s->radius_max_m + margin_min_m), s->crew, &s->grid);
+    if (status != DIG_OK) {
+        return status;
+    }
+    s->cell_grain = malloc((n + 1) * sizeof *s->cell_grain);
+    if (s->cell_grain == NULL) {
+        status = DIG_ENOMEM;
+    } else {
+        dig_crew_each(s->crew, n, order_by_cells, s);
+        status = find_pairs(s);
+    }
+    free(s->cell_grain);
+    dig_cell_grid_finish(&s->grid);
     return status;
 }
 
@@ -231,57 +284,24 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
             return DIG_ENOMEM;
         }
     }
+    list->reach = 0;
     if (n == 0) {
         return DIG_OK;
     }
-
-    // Cells as wide as the reach of a resting pair: most grains then search 27 cells.
-    double radius_max_m = 0.0;
-    double margin_min_m = INFINITY;
-    for (size_t i = 0; i < n; i++) {
-        radius_max_m = fmax(radius_max_m, grains->type[grains->type_of[i]].radius_m);
-        margin_min_m = fmin(margin_min_m, margin_m[i]);
-        memcpy(list->reference_m[i], grains->motion[i].x_m, 3 * sizeof(double));
-        list->reference_m[i][3] = margin_m[i];
-    }
     struct shared_search search = {
-        .grains       = grains,
-        .margin_m     = margin_m,
-        .period_m     = period_y_m,
-        .radius_max_m = radius_max_m,
-        .crew         = crew,
-        .list         = list,
+        .grains   = grains,
+        .margin_m = margin_m,
+        .period_m = period_y_m,
+        .crew     = crew,
+        .finds    = calloc(dig_crew_members(crew), sizeof *search.finds),
+        .list     = list,
     };
-    enum dig_status status =
-        dig_cell_grid_fill(grains, 2.0 * (radius_max_m + margin_min_m), crew, &search.grid);
-    if (status == DIG_OK) {
-        search.cell_grain = malloc((n + 1) * sizeof *search.cell_grain);
-        if (search.cell_grain == NULL) {
-            status = DIG_ENOMEM;
-        } else {
-            dig_crew_each(crew, n, order_by_cells, &search);
-            status = find_pairs(&search);
-        }
-        free(search.cell_grain);
-        dig_cell_grid_finish(&search.grid);
-    }
+    const enum dig_status status = search.finds != NULL ? build(&search) : DIG_ENOMEM;
+    free(search.finds);
     if (status != DIG_OK) {
         dig_neighbours_finish(list);
     }
     return status;
-}
-
-size_t dig_neighbours_reach(const struct dig_neighbours *const list)
-{
-    size_t reach = 0;
-    for (size_t i = 0; i < list->n; i++) {
-        for (uint32_t s = list->start[i]; s < list->start[i + 1]; s++) {
-            const size_t j     = list->other[s];
-            const size_t apart = i < j ? j - i : i - j;
-            reach              = apart > reach ? apart : reach;
-        }
-    }
-    return reach;
 }
 
 void dig_neighbours_finish(struct dig_neighbours *const list)

@@ -21,6 +21,7 @@ struct dig_neighbours {
     uint32_t *start; // [n + 1]: the pairs found by grain i are start[i] … start[i + 1] - 1
     uint32_t *other; // [start[n]]
     size_t    room;  // of other
+    size_t    reach; // largest distance in memory between the two grains of a pair
     double (*reference_m)[4]; // [n] position when the list was made, and the margin
 };
 
@@ -32,9 +33,6 @@ DIG_MUST_CHECK enum dig_status dig_neighbours_build(const struct dig_grains *gra
                                                     double period_y_m, const double margin_m[],
                                                     struct dig_crew       *crew,
                                                     struct dig_neighbours *list);
-
-/// Largest distance in memory between the two grains of a pair.
-size_t dig_neighbours_reach(const struct dig_neighbours *list);
 
 void dig_neighbours_finish(struct dig_neighbours *list);
 

@@ -171,6 +171,15 @@ static inline struct dig_law_single dig_law_to_single(const struct dig_law *cons
 #undef DIG_REAL_SQRT
 #undef DIG_REAL_FABS
 
+/// With the sign -1: the history as the other grain has it.
+DIG_BOTH static inline struct dig_contact_history
+dig_contact_history_times(const struct dig_contact_history h, const double sign)
+{
+    const struct dig_contact_history times = { sign * h.sx_m,  sign * h.sy_m,  sign * h.sz_m,
+                                               sign * h.mx_Nm, sign * h.my_Nm, sign * h.mz_Nm };
+    return times;
+}
+
 DIG_LAW_STAGE struct dig_contact_normal dig_law_normal(const double reach_m, const double dx_m,
                                                        const double dy_m, const double dz_m)
 {

@@ -8,6 +8,7 @@
 //                                  velocities
 //                                 download   then a thread a grain: loads -> motion
 //                                            … step after step, until a grain nears its margin
+//                                  relist    a thread a grain: contacts go on in new lists
 //
 // The work of a thread stands in device_pair.h, device_surfaces.h and device_grain.h, in C for both
 // sides. A device that rounds as the processor does gives the bits of
@@ -27,7 +28,7 @@
 #include <stdint.h>
 
 /// Version of this header: a device library of another version is refused.
-#define DIG_DEVICE_VERSION 3
+#define DIG_DEVICE_VERSION 4
 
 #define DIG_DEVICE_LAWS (DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
 
@@ -43,6 +44,7 @@ struct dig_device_view {
     const double (*reference_m)[4]; // [n] position when the list was made, and the margin
     uint32_t       *pair_i;         // [pairs] the grain that lists the pair
     const uint32_t *pair_j;         // [pairs] its partner
+    const uint32_t *pair_start; // [n + 1] grain i lists pairs pair_start[i] … pair_start[i + 1] - 1
     uint32_t       *load_start; // [n + 1] loads of grain i: load_start[i] … load_start[i + 1] - 1
     uint32_t (*load_index)[2];  // [pairs] places of the loads on i and on j
     const struct dig_law *pair_law; // [DIG_DEVICE_LAWS] type of i x DIG_GRAIN_TYPES_MAX + type of j
@@ -62,6 +64,12 @@ struct dig_device_view {
     struct dig_wrench          *on_tool; // [n] wrench of each grain on the tool, summed over steps
     struct dig_clump_body      *clump;   // [clumps]
     uint32_t                   *margin_flag; // [DIG_MARGIN_FLAGS] set when some grain …
+};
+
+/// From old lists to new ones.
+struct dig_device_move {
+    const uint32_t *was;                        // [n] the index that grain i had
+    double          period_y_m, inverse_period; // 0: walls; and the inverse
 };
 
 enum dig_margin_flag {
@@ -92,6 +100,11 @@ struct dig_device {
 
     /// Copies the whole view, whose arrays stay the caller's.
     enum dig_status (*upload)(struct dig_device *device, const struct dig_device_view *view);
+
+    /// Takes the view's lists and clumps, of the same grains and surfaces in another order, and
+    /// carries the device's own state over to them (device_carry.h). After download() and no step.
+    enum dig_status (*relist)(struct dig_device *device, const struct dig_device_view *view,
+                              const struct dig_device_move *move);
 
     /// Queues one step; may return before it is done.
     enum dig_status (*step)(struct dig_device *device, const struct dig_device_step *step);

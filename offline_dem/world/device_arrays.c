@@ -102,7 +102,20 @@ struct copy {
 };
 
 // Loads on a grain stand in a row, in the order of its pairs in the neighbour list: every device
-// adds them in this order. A member goes through all pairs for the loads on its own grains.
+// adds them in this order. A member goes through all pairs for the loads on its own grains; but
+// pairs of grains far from these in memory are none of theirs.
+struct range {
+    uint32_t first, end;
+};
+
+static struct range pairs_around(const struct copy *const c, const size_t first, const size_t end)
+{
+    const struct dig_neighbours *const near = &c->world->neighbours;
+    const size_t                       n    = c->view->n;
+    return (struct range){ near->start[first > near->reach ? first - near->reach : 0],
+                           near->start[n - end > near->reach ? end + near->reach : n] };
+}
+
 static void count_loads(void *const context, const size_t first, const size_t end)
 {
     const struct copy *const            c     = context;
@@ -115,7 +128,8 @@ static void count_loads(void *const context, const size_t first, const size_t en
             v->pair_i[p] = (uint32_t)i;
         }
     }
-    for (uint32_t p = 0; p < v->pairs; p++) {
+    const struct range around = pairs_around(c, first, end);
+    for (uint32_t p = around.first; p < around.end; p++) {
         if (v->pair_j[p] >= first && v->pair_j[p] < end) {
             count[v->pair_j[p]]++;
         }
@@ -125,9 +139,10 @@ static void count_loads(void *const context, const size_t first, const size_t en
 // Every start ends where the next grain's loads begin.
 static void place_loads(void *const context, const size_t first, const size_t end)
 {
-    const struct dig_device_view *const v    = ((const struct copy *)context)->view;
-    uint32_t *const                     next = v->load_start;
-    for (uint32_t p = 0; p < v->pairs; p++) {
+    const struct dig_device_view *const v      = ((const struct copy *)context)->view;
+    uint32_t *const                     next   = v->load_start;
+    const struct range                  around = pairs_around(context, first, end);
+    for (uint32_t p = around.first; p < around.end; p++) {
         if (v->pair_i[p] >= first && v->pair_i[p] < end) {
             v->load_index[p][0] = next[v->pair_i[p]]++;
         }
@@ -241,8 +256,8 @@ static void write_laws(const struct dig_world *const w, struct dig_law pair_law[
     }
 }
 
-enum dig_status dig_device_arrays_write(struct dig_world *const         w,
-                                        struct dig_device_arrays *const arrays)
+enum dig_status dig_device_arrays_write_lists(struct dig_world *const         w,
+                                              struct dig_device_arrays *const arrays)
 {
     const size_t                  n     = w->grains.n;
     const size_t                  pairs = w->neighbours.start[n];
@@ -265,6 +280,7 @@ enum dig_status dig_device_arrays_write(struct dig_world *const         w,
     v->type_of       = w->grains.type_of;
     v->reference_m   = (const double(*)[4])w->neighbours.reference_m;
     v->pair_j        = w->neighbours.other;
+    v->pair_start    = w->neighbours.start;
     v->pair_law      = arrays->pair_law;
     v->wall_law      = w->wall_law;
     v->tool_law      = w->tool_law;
@@ -273,9 +289,19 @@ enum dig_status dig_device_arrays_write(struct dig_world *const         w,
     struct copy copy = { .world = w, .view = v };
     index_loads(&copy);
     write_laws(w, arrays->pair_law);
-    write_pairs(&copy);
-    write_surfaces(&copy);
     memset(v->on_tool, 0, n * sizeof *v->on_tool);
     memset(v->margin_flag, 0, DIG_MARGIN_FLAGS * sizeof *v->margin_flag);
     return DIG_OK;
+}
+
+enum dig_status dig_device_arrays_write(struct dig_world *const         w,
+                                        struct dig_device_arrays *const arrays)
+{
+    const enum dig_status status = dig_device_arrays_write_lists(w, arrays);
+    if (status == DIG_OK) {
+        struct copy copy = { .world = w, .view = &arrays->view };
+        write_pairs(&copy);
+        write_surfaces(&copy);
+    }
+    return status;
 }

@@ -23,6 +23,10 @@ void dig_device_arrays_finish(struct dig_device_arrays *arrays);
 DIG_MUST_CHECK enum dig_status dig_device_arrays_write(struct dig_world         *world,
                                                        struct dig_device_arrays *arrays);
 
+/// The same without the state of contacts, which the device keeps. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_device_arrays_write_lists(struct dig_world         *world,
+                                                             struct dig_device_arrays *arrays);
+
 /// Makes the world's contact lists from the view. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_device_arrays_read(const struct dig_device_arrays *arrays,
                                                       struct dig_world               *world);

@@ -90,10 +90,11 @@ static void find_slots(void *const context, const size_t first, const size_t end
 }
 
 // Moves grains that have left through a periodic side to the other.
-static void wrap(struct dig_world *const w)
+static void wrap(void *const context, const size_t first, const size_t end)
 {
-    const double inverse_period = dig_period_inverse(w->period_y_m);
-    for (size_t i = 0; i < w->grains.n && w->period_y_m > 0.0; i++) {
+    struct dig_world *const w              = context;
+    const double            inverse_period = dig_period_inverse(w->period_y_m);
+    for (size_t i = first; i < end; i++) {
         double *const y_m = &w->grains.motion[i].x_m[1];
         *y_m              = dig_period_fold(*y_m, w->period_y_m, inverse_period);
     }
@@ -110,7 +111,8 @@ static void widen(void *const context, const size_t first, const size_t end)
     }
 }
 
-static enum dig_status rebuild(struct rebuild *const r)
+// Grains and neighbours; contacts still have the grains' old indices.
+static enum dig_status sort(struct rebuild *const r)
 {
     struct dig_world *const w            = r->world;
     const size_t            n            = w->grains.n;
@@ -118,7 +120,9 @@ static enum dig_status rebuild(struct rebuild *const r)
     for (size_t k = 0; k < w->grains.types; k++) {
         radius_max_m = fmax(radius_max_m, w->grains.type[k].radius_m);
     }
-    wrap(w);
+    if (w->period_y_m > 0.0) {
+        dig_crew_each(w->crew, n, wrap, w);
+    }
     enum dig_status status = dig_cell_grid_sort(
         &w->grains, (w->single ? SORT_RADII_SINGLE : SORT_RADII) * radius_max_m, w->crew, r->order);
     status = status == DIG_OK ? dig_grains_reorder(&w->grains, r->order, w->crew) : status;
@@ -128,13 +132,16 @@ static enum dig_status rebuild(struct rebuild *const r)
     for (size_t k = 0; k < n; k++) {
         r->new_index[r->order[k]] = (uint32_t)k;
     }
-    dig_lists_renumber(w, r->new_index);
     dig_bodies_renumber(w->bodies, r->new_index);
     dig_crew_each(w->crew, n, widen, r);
-    status = dig_neighbours_build(&w->grains, w->period_y_m, r->margin, w->crew, &w->neighbours);
-    if (status != DIG_OK) {
-        return status;
-    }
+    w->list_rebuilds++;
+    return dig_neighbours_build(&w->grains, w->period_y_m, r->margin, w->crew, &w->neighbours);
+}
+
+static void find_all_slots(struct rebuild *const r)
+{
+    struct dig_world *const w = r->world;
+    dig_lists_renumber(w, r->new_index);
     for (size_t l = 0; l < DIG_PAIR_LISTS; l++) {
         r->list = &w->pair[l];
         r->like = l / DIG_GRAIN_TYPES_MAX == l % DIG_GRAIN_TYPES_MAX;
@@ -143,28 +150,43 @@ static enum dig_status rebuild(struct rebuild *const r)
         }
     }
     if (w->single) {
-        dig_grains_set_slabs(&w->grains, dig_neighbours_reach(&w->neighbours));
+        dig_grains_set_slabs(&w->grains, w->neighbours.reach);
     }
-    w->list_rebuilds++;
-    return DIG_OK;
 }
 
-enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_skin skin)
+static enum dig_status rebuild(struct dig_world *const w, const struct dig_skin skin,
+                               uint32_t order[], const bool with_contacts)
 {
     const size_t   n = w->grains.n;
     struct rebuild r = {
         .world     = w,
         .skin      = skin,
-        .order     = malloc((n + 1) * sizeof *r.order),
+        .order     = order,
         .new_index = calloc(n + 1, sizeof *r.new_index),
         .margin    = malloc((n + 1) * sizeof *r.margin),
     };
-    const bool            has_room = r.order != NULL && r.new_index != NULL && r.margin != NULL;
-    const enum dig_status status   = has_room ? rebuild(&r) : DIG_ENOMEM;
-    free(r.order);
+    const bool      has_room = r.new_index != NULL && r.margin != NULL;
+    enum dig_status status   = has_room ? sort(&r) : DIG_ENOMEM;
+    if (status == DIG_OK && with_contacts) {
+        find_all_slots(&r);
+    }
     free(r.new_index);
     free(r.margin);
     return status;
+}
+
+enum dig_status dig_lists_rebuild(struct dig_world *const w, const struct dig_skin skin)
+{
+    uint32_t *const       order  = malloc((w->grains.n + 1) * sizeof *order);
+    const enum dig_status status = order != NULL ? rebuild(w, skin, order, true) : DIG_ENOMEM;
+    free(order);
+    return status;
+}
+
+enum dig_status dig_lists_sort(struct dig_world *const w, const struct dig_skin skin,
+                               uint32_t order[])
+{
+    return rebuild(w, skin, order, false);
 }
 
 // Whether the neighbour list covers the contact margins: each grain's displacement since and its

@@ -20,6 +20,11 @@ struct dig_skin {
 /// DIG_NO_SLOT; pairs of one type take its order. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_lists_rebuild(struct dig_world *world, struct dig_skin skin);
 
+/// The same without contacts, which the lists hold no longer: for who keeps them elsewhere.
+/// order[k], of [grains + 1], is where grain k was. DIG_ENOMEM.
+DIG_MUST_CHECK enum dig_status dig_lists_sort(struct dig_world *world, struct dig_skin skin,
+                                              uint32_t order[]);
+
 /// Maps contacts to their grains' new indices: new_index[old], UINT32_MAX: removed.
 void dig_lists_renumber(struct dig_world *world, const uint32_t new_index[]);
 

@@ -20,7 +20,10 @@ struct dig_offloaded {
     struct dig_device       *device;
     struct dig_device_arrays arrays;
     bool                     is_synced; // the host has the state, contacts in the world's lists
-    bool                     is_motion_synced; // the host has the motions of the last step
+    bool                     is_motion_synced;   // the host has the motions of the last step
+    bool                     has_outdated_lists; // but all else is on the device
+    uint32_t                *was; // [was_room] the index that each grain had in the lists before
+    size_t                   was_room;
     size_t                   unpolled_steps;
 };
 
@@ -34,6 +37,7 @@ static void destroy(struct dig_world *const w)
     struct dig_offloaded *const o = own_of(w);
     o->device->destroy(o->device);
     dig_device_arrays_finish(&o->arrays);
+    free(o->was);
     free(o);
 }
 
@@ -75,8 +79,50 @@ static enum dig_status upload(struct dig_world *const w)
     if (status != DIG_OK) {
         return status;
     }
-    o->unpolled_steps = 0;
+    o->unpolled_steps     = 0;
+    o->has_outdated_lists = false;
     return o->device->upload(o->device, &o->arrays.view);
+}
+
+static enum dig_status make_was_room(struct dig_offloaded *const o, const size_t n)
+{
+    if (o->was_room < n + 1) {
+        free(o->was);
+        o->was      = malloc((n + 1) * sizeof *o->was);
+        o->was_room = o->was != NULL ? n + 1 : 0;
+    }
+    return o->was != NULL ? DIG_OK : DIG_ENOMEM;
+}
+
+// Rebuilds the lists from the motions on the host; the device keeps the state.
+static enum dig_status relist(struct dig_world *const w)
+{
+    struct dig_offloaded *const o      = own_of(w);
+    enum dig_status             status = make_was_room(o, w->grains.n);
+    status = status == DIG_OK ? dig_lists_sort(w, wide_skin, o->was) : status;
+    status = status == DIG_OK ? dig_device_arrays_write_lists(w, &o->arrays) : status;
+    if (status != DIG_OK) {
+        return status;
+    }
+    const struct dig_device_move move = { o->was, w->period_y_m,
+                                          dig_period_inverse(w->period_y_m) };
+    o->unpolled_steps                 = 0;
+    o->has_outdated_lists             = false;
+    return o->device->relist(o->device, &o->arrays.view, &move);
+}
+
+// Where the host has changed the world all of it goes to the device; else new lists do.
+static enum dig_status renew(struct dig_world *const w)
+{
+    enum dig_status status = sync(w, w->stale);
+    if (status == DIG_OK && !dig_grains_are_sound(&w->grains, w->dt_s, w->crew)) {
+        status = DIG_EINVAL;
+    }
+    if (status == DIG_OK) {
+        status = w->stale ? upload(w) : relist(w);
+    }
+    w->stale = w->stale && status != DIG_OK;
+    return status;
 }
 
 static size_t poll_interval(const struct dig_world *const w)
@@ -120,30 +166,26 @@ static enum dig_status poll_margins(struct dig_world *const w)
     if (status == DIG_OK && margin_flag[DIG_MARGIN_LEFT] != 0) {
         return DIG_EINVAL;
     }
-    w->stale = w->stale || margin_flag[DIG_MARGIN_NEARLY_LEFT] != 0;
+    o->has_outdated_lists = margin_flag[DIG_MARGIN_NEARLY_LEFT] != 0;
     return status;
 }
 
 static enum dig_status step(struct dig_world *const w)
 {
-    struct dig_offloaded *const o = own_of(w);
-    if (w->stale) {
-        enum dig_status status = sync(w, true);
-        if (status == DIG_OK && !dig_grains_are_sound(&w->grains, w->dt_s)) {
-            status = DIG_EINVAL;
-        }
-        status = status == DIG_OK ? upload(w) : status;
+    struct dig_offloaded *const o      = own_of(w);
+    enum dig_status             status = DIG_OK;
+    if (w->stale || o->has_outdated_lists) {
+        status = renew(w);
         if (status != DIG_OK) {
             return status;
         }
-        w->stale = false;
     }
-    const struct dig_device_step next   = make_step(w);
-    enum dig_status              status = o->device->step(o->device, &next);
-    o->is_synced                        = false;
-    o->is_motion_synced                 = false;
-    status                              = status == DIG_OK ? poll_margins(w) : status;
-    w->started                          = true;
+    const struct dig_device_step next = make_step(w);
+    status                            = o->device->step(o->device, &next);
+    o->is_synced                      = false;
+    o->is_motion_synced               = false;
+    status                            = status == DIG_OK ? poll_margins(w) : status;
+    w->started                        = true;
     w->steps++;
     return status;
 }

@@ -78,7 +78,8 @@ static enum dig_status prepare(struct dig_world *const w)
         if (w->contact_rebuilds == 0) {
             choose_precision(w);
         }
-        status = dig_grains_are_sound(&w->grains, w->dt_s) ? dig_lists_update(w) : DIG_EINVAL;
+        status =
+            dig_grains_are_sound(&w->grains, w->dt_s, w->crew) ? dig_lists_update(w) : DIG_EINVAL;
     }
     if (status == DIG_OK && w->single) {
         status = dig_grains_begin_single(&w->grains);

@@ -1,15 +1,28 @@
 #include "tests/offline_dem/host_device.h"
 
+#include "offline_dem/device/device_carry.h"
 #include "offline_dem/device/device_grain.h"
 #include "offline_dem/device/device_surfaces.h"
 #include "offline_dem/world/offloaded.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+#define ARRAYS 24
+
+// A view's arrays, of the device's own: what is not uploaded or downloaded must not be missed.
+struct memory {
+    struct dig_device_view view;
+    size_t                 arrays;
+    void                  *array[ARRAYS];
+    bool                   is_short;
+};
 
 // Both the interface and what it owns.
 struct host {
     struct dig_device      device;
-    struct dig_device_view view;
+    struct dig_device_view caller;
+    struct memory          memory;
 };
 
 static struct host *host_of(struct dig_device *const device)
@@ -17,16 +30,89 @@ static struct host *host_of(struct dig_device *const device)
     return device->own;
 }
 
+static void forget(struct memory *const m)
+{
+    for (size_t a = 0; a < m->arrays; a++) {
+        free(m->array[a]);
+    }
+    *m = (struct memory){ 0 };
+}
+
+// What has no values yet is filled with ones, which are none that a step may read.
+static void *place(struct memory *const m, const void *const from, const size_t bytes)
+{
+    unsigned char *const to = malloc(bytes + 1);
+    m->is_short             = m->is_short || to == NULL;
+    if (to != NULL && from != NULL) {
+        memcpy(to, from, bytes);
+    } else if (to != NULL) {
+        memset(to, 0xff, bytes);
+    }
+    m->array[m->arrays++] = to;
+    return to;
+}
+
+// The view's arrays; the state of grains and contacts where it is not carried over.
+static struct memory copy_of(const struct dig_device_view *const v, const bool carried)
+{
+    const size_t  n        = v->n;
+    const size_t  p        = v->pairs;
+    const size_t  surfaces = v->surfaces;
+    struct memory m        = { .view = *v };
+    m.view.type_of         = place(&m, v->type_of, n * sizeof *v->type_of);
+    m.view.reference_m     = place(&m, v->reference_m, n * sizeof *v->reference_m);
+    m.view.pair_i          = place(&m, carried ? NULL : v->pair_i, p * sizeof *v->pair_i);
+    m.view.pair_j          = place(&m, v->pair_j, p * sizeof *v->pair_j);
+    m.view.pair_start      = place(&m, v->pair_start, (n + 1) * sizeof *v->pair_start);
+    m.view.load_start      = place(&m, v->load_start, (n + 1) * sizeof *v->load_start);
+    m.view.load_index      = place(&m, v->load_index, p * sizeof *v->load_index);
+    m.view.pair_law        = place(&m, v->pair_law, DIG_DEVICE_LAWS * sizeof *v->pair_law);
+    m.view.wall_law        = place(&m, v->wall_law, DIG_GRAIN_TYPES_MAX * sizeof *v->wall_law);
+    m.view.tool_law        = place(&m, v->tool_law, DIG_GRAIN_TYPES_MAX * sizeof *v->tool_law);
+    m.view.type            = place(&m, v->type, DIG_GRAIN_TYPES_MAX * sizeof *v->type);
+    m.view.shape           = place(&m, v->shape, v->shape == NULL ? 0 : sizeof *v->shape);
+    m.view.motion          = place(&m, carried ? NULL : v->motion, n * sizeof *v->motion);
+    m.view.pair_history = place(&m, carried ? NULL : v->pair_history, p * sizeof *v->pair_history);
+    m.view.touching     = place(&m, carried ? NULL : v->touching, 2 * p * sizeof *v->touching);
+    m.view.pair_load    = place(&m, NULL, 2 * p * sizeof *v->pair_load);
+    m.view.surface_history =
+        place(&m, carried ? NULL : v->surface_history, surfaces * n * sizeof *v->surface_history);
+    m.view.surface_mask = place(&m, carried ? NULL : v->surface_mask, n * sizeof *v->surface_mask);
+    m.view.surface_load = place(&m, NULL, n * sizeof *v->surface_load);
+    m.view.on_tool      = place(&m, v->on_tool, n * sizeof *v->on_tool);
+    m.view.clump        = place(&m, v->clump, v->clumps * sizeof *v->clump);
+    m.view.margin_flag  = place(&m, v->margin_flag, DIG_MARGIN_FLAGS * sizeof *v->margin_flag);
+    return m;
+}
+
 static enum dig_status upload(struct dig_device *const            device,
                               const struct dig_device_view *const view)
 {
-    host_of(device)->view = *view;
-    return DIG_OK;
+    struct host *const host = host_of(device);
+    forget(&host->memory);
+    host->caller = *view;
+    host->memory = copy_of(view, false);
+    return host->memory.is_short ? DIG_ENOMEM : DIG_OK;
+}
+
+static enum dig_status relist(struct dig_device *const            device,
+                              const struct dig_device_view *const view,
+                              const struct dig_device_move *const move)
+{
+    struct host *const host = host_of(device);
+    struct memory      from = host->memory;
+    host->caller            = *view;
+    host->memory            = copy_of(view, true);
+    for (uint32_t i = 0; i < view->n && !host->memory.is_short; i++) {
+        dig_device_carry_grain(&from.view, move, &host->memory.view, i);
+    }
+    forget(&from);
+    return host->memory.is_short ? DIG_ENOMEM : DIG_OK;
 }
 
 static enum dig_status step(struct dig_device *const device, const struct dig_device_step *const s)
 {
-    const struct dig_device_view *const view = &host_of(device)->view;
+    const struct dig_device_view *const view = &host_of(device)->memory.view;
     for (uint32_t p = 0; p < view->pairs; p++) {
         dig_device_step_pair(view, s, p);
     }
@@ -45,22 +131,35 @@ static enum dig_status step(struct dig_device *const device, const struct dig_de
 static enum dig_status poll_margins(struct dig_device *const device,
                                     uint32_t                 margin_flag[DIG_MARGIN_FLAGS])
 {
-    for (int a = 0; a < DIG_MARGIN_FLAGS; a++) {
-        margin_flag[a] = host_of(device)->view.margin_flag[a];
-    }
+    memcpy(margin_flag, host_of(device)->memory.view.margin_flag,
+           DIG_MARGIN_FLAGS * sizeof *margin_flag);
     return DIG_OK;
 }
 
-// All is there. That on_tool begins anew is up to who adds it up: see offloaded.c.
 static enum dig_status download(struct dig_device *const device, const bool all)
 {
-    (void)device;
-    (void)all;
+    const struct dig_device_view *const to   = &host_of(device)->caller;
+    const struct dig_device_view *const from = &host_of(device)->memory.view;
+    const size_t                        n    = from->n;
+    memcpy(to->motion, from->motion, n * sizeof *to->motion);
+    memcpy(to->on_tool, from->on_tool, n * sizeof *to->on_tool);
+    memset(from->on_tool, 0, n * sizeof *from->on_tool);
+    if (from->clumps > 0) {
+        memcpy(to->clump, from->clump, from->clumps * sizeof *to->clump);
+    }
+    if (all) {
+        memcpy(to->pair_history, from->pair_history, from->pairs * sizeof *to->pair_history);
+        memcpy(to->touching, from->touching, 2 * (size_t)from->pairs * sizeof *to->touching);
+        memcpy(to->surface_history, from->surface_history,
+               from->surfaces * n * sizeof *to->surface_history);
+        memcpy(to->surface_mask, from->surface_mask, n * sizeof *to->surface_mask);
+    }
     return DIG_OK;
 }
 
 static void destroy(struct dig_device *const device)
 {
+    forget(&host_of(device)->memory);
     free(device->own);
 }
 
@@ -74,6 +173,7 @@ struct dig_device *dem_host_device_create(void)
         .name         = "processor",
         .own          = host,
         .upload       = upload,
+        .relist       = relist,
         .step         = step,
         .poll_margins = poll_margins,
         .download     = download,
