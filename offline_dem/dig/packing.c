@@ -155,15 +155,27 @@ static bool overlaps_one(const struct pouring *const p, const struct dig_bed *co
     return false;
 }
 
+// Most attempts fail, and soonest at what is nearest: cells, and images beyond periodic sides.
+static const ptrdiff_t nearest_first[] = { 0, -1, 1 };
+
 static bool overlaps(const struct pouring *const p, const struct dig_bed *const bed,
                      const double at_m[3], const double radius_m)
 {
-    ptrdiff_t cell[3] = { 0 };
+    ptrdiff_t              cell[3] = { 0 };
+    const ptrdiff_t *const n       = p->cells.count;
+    // An image beyond a periodic side is out of reach of most.
+    const double reach_m = radius_m + 0.5 * p->cells.edge_m;
+    const double y_m     = at_m[1] - p->cells.low_m[1];
+    if (y_m < -reach_m || y_m > (double)n[1] * p->cells.edge_m + reach_m) {
+        return false;
+    }
     find_cell(&p->cells, at_m, cell);
-    const ptrdiff_t *const n = p->cells.count;
-    for (ptrdiff_t z = cell[2] - 1; z <= cell[2] + 1; z++) {
-        for (ptrdiff_t y = cell[1] - 1; y <= cell[1] + 1; y++) {
-            for (ptrdiff_t x = cell[0] - 1; x <= cell[0] + 1; x++) {
+    for (size_t k = 0; k < 3; k++) {
+        const ptrdiff_t z = cell[2] + nearest_first[k];
+        for (size_t j = 0; j < 3; j++) {
+            const ptrdiff_t y = cell[1] + nearest_first[j];
+            for (size_t i = 0; i < 3; i++) {
+                const ptrdiff_t x = cell[0] + nearest_first[i];
                 if (z >= 0 && z < n[2] && y >= 0 && y < n[1] && x >= 0 && x < n[0] &&
                     overlaps_one(p, bed, at_m, radius_m, x + n[0] * (y + n[1] * z))) {
                     return true;
@@ -190,9 +202,10 @@ static bool is_free(const struct pouring *const p, const struct dig_bed *const b
             return false;
         }
     }
-    const int images = p->period_m > 0.0 ? 1 : 0;
-    for (int image = -images; image <= images; image++) {
-        const double shown[3] = { at_m[0], at_m[1] + image * p->period_m, at_m[2] };
+    const size_t images = p->period_m > 0.0 ? 3 : 1;
+    for (size_t k = 0; k < images; k++) {
+        const double shown[3] = { at_m[0], at_m[1] + (double)nearest_first[k] * p->period_m,
+                                  at_m[2] };
         if (overlaps(p, bed, shown, radius_m)) {
             return false;
         }
