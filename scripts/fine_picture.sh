@@ -7,13 +7,14 @@ to=${1:?usage: fine_picture.sh OUT.svg [LINES.txt]} lines=${2:-docs/pictures/fin
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Grains across, mean and its standard error over rho g w^4. One bed has the relative scatter of the beds before it.
+# Grains across, mean and its standard error over rho g w^4. Two beds do not tell how they scatter: they
+# have the relative scatter of the beds before them.
 awk -v unit=0.5888 '/^across_[0-9]+ / { n = substr($1, 8) + 0
         for (i = 1; i <= NF; i++) { if ($i == "mean" && $(i + 1) + 0 > 0 && !(n in mean)) { mean[n] = $(i + 1); error[n] = $(i + 3) } if ($(i + 1) == "beds") beds[n] = $i }
         order[++k] = n }
     END { for (i = 1; i <= k; i++) { n = order[i]
-              if (beds[n] > 1) share = error[n] * sqrt(beds[n]) / mean[n]
-              else error[n] = share * mean[n]
+              if (beds[n] > 2) share = error[n] * sqrt(beds[n]) / mean[n]
+              else error[n] = share * mean[n] / sqrt(beds[n])
               printf "%.4f %.5f %.5f\n", n == 9 ? 28 / 3 : n, mean[n] / unit, error[n] / unit } }' "$lines" >"$work/points"
 awk '{ w = 1 / $3 ^ 2; x = 1 / $1; s += w; sx += w * x; sy += w * $2; sxx += w * x * x; sxy += w * x * $2; X[NR] = x; Y[NR] = $2; W[NR] = w }
     END { d = s * sxx - sx * sx; b = (s * sxy - sx * sy) / d; a = (sy - b * sx) / s
