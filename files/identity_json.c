@@ -156,8 +156,9 @@ static enum dig_status take(const char *const path, cyaml_data_t *const loaded, 
     const struct identity_text *const text   = loaded;
     struct dig_identity               read   = text->identity;
     enum dig_status                   status = take_approach(path, "depth", &read.made, error);
-    if (status == DIG_OK) {
-        status = take_approach(path, "matched_depth", &read.matched, error);
+    status = status == DIG_OK ? take_approach(path, "matched_depth", &read.matched, error) : status;
+    if (status != DIG_OK) {
+        return status;
     }
     if (!(read.matched.depth > 0.0)) {
         read.matched = read.made;
@@ -172,41 +173,38 @@ static enum dig_status take(const char *const path, cyaml_data_t *const loaded, 
     } else {
         m->weighted_distance = (double)NAN;
     }
-    if (status == DIG_OK && m->weighted >= 0 &&
-        !(is_gravel(&read.weighted_nearest) && m->weighted_distance >= 0.0)) {
-        status = dig_yaml_refuse(path, error,
-                                 "weighted_nearest: no gravel, expected friction and rolling >= 0, "
-                                 "density > 0, with a weighted_distance >= 0");
+    if (m->weighted >= 0 && !(is_gravel(&read.weighted_nearest) && m->weighted_distance >= 0.0)) {
+        return dig_yaml_refuse(path, error,
+                               "weighted_nearest: no gravel, expected friction and rolling >= 0, "
+                               "density > 0, with a weighted_distance >= 0");
     }
-    for (size_t i = 0; i < text->samples && status == DIG_OK; i++) {
+    for (size_t i = 0; i < text->samples; i++) {
         if (!is_gravel(&text->sample[i])) {
-            status = dig_yaml_refuse(
+            return dig_yaml_refuse(
                 path, error,
                 "samples: the %zu-th is no gravel, expected friction and rolling >= 0, density > 0",
                 i + 1);
         }
     }
-    if (status == DIG_OK && !dig_name_ok(read.trajectory)) {
-        status = dig_yaml_refuse(path, error, "trajectory: \"%s\", expected " DIG_NAME_RULE,
-                                 read.trajectory);
+    if (!dig_name_ok(read.trajectory)) {
+        return dig_yaml_refuse(path, error, "trajectory: \"%s\", expected " DIG_NAME_RULE,
+                               read.trajectory);
     }
-    for (size_t i = 0; i < read.recorded && status == DIG_OK; i++) {
+    for (size_t i = 0; i < read.recorded; i++) {
         take_dig(&text->recorded[i], &read.recording[i]);
         if (!dig_name_ok(read.recording[i].trajectory) || !is_dig(&read.recording[i].seen)) {
-            status = dig_yaml_refuse(path, error,
-                                     "recorded: the %zu-th is no dig, expected a name, 0 <= first "
-                                     "< last <= 1, finite moments and forces, sigmas >= 0",
-                                     i + 1);
+            return dig_yaml_refuse(path, error,
+                                   "recorded: the %zu-th is no dig, expected a name, 0 <= first < "
+                                   "last <= 1, finite moments and forces, sigmas >= 0",
+                                   i + 1);
         }
     }
-    if (status == DIG_OK && !is_gravel(&m->gravel)) {
-        status = dig_yaml_refuse(
+    if (!is_gravel(&m->gravel)) {
+        return dig_yaml_refuse(
             path, error, "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
     }
-    if (status == DIG_OK) {
-        *(struct dig_identity *)into = read;
-    }
-    return status;
+    *(struct dig_identity *)into = read;
+    return DIG_OK;
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,

@@ -114,38 +114,21 @@ static enum dig_status check_rate(const struct dig_csv *const csv, const bool ea
     return DIG_OK;
 }
 
-// Checks the rows' times and their rate, and makes room for as many of `size` bytes.
-static enum dig_status make_rows(const struct dig_csv *const csv, const char *const path,
-                                 const struct dig_csv_column column[], const size_t size,
-                                 void **const rows, struct dig_error *const error)
+// Reads a file of these columns, and checks its rows' times and their rate.
+static enum dig_status read_rows(const char *const path, const size_t columns,
+                                 const struct dig_csv_column column[], struct dig_csv *const csv,
+                                 struct dig_error *const error)
 {
-    enum dig_status status = check_rows(csv, path, column, error);
-    if (status == DIG_OK) {
-        status = check_rate(csv, column == force_column, path, error);
-    }
+    enum dig_status status = dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, columns, column, csv, error);
     if (status != DIG_OK) {
         return status;
     }
-    *rows = malloc(csv->rows * size);
-    return *rows != NULL
-               ? DIG_OK
-               : dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv->rows);
-}
-
-static enum dig_status take_force_rows(const struct dig_csv *const csv, const char *const path,
-                                       struct dig_recording *const recording,
-                                       struct dig_error *const     error)
-{
-    void                 *rows = NULL;
-    const enum dig_status status =
-        make_rows(csv, path, force_column, sizeof(struct dig_force_row), &rows, error);
+    status = check_rows(csv, path, column, error);
+    status = status == DIG_OK ? check_rate(csv, column == force_column, path, error) : status;
     if (status != DIG_OK) {
-        return status;
+        dig_csv_finish(csv);
     }
-    assert(rows != NULL);
-    memcpy(rows, csv->value, csv->rows * sizeof(struct dig_force_row));
-    *recording = (struct dig_recording){ .rows = csv->rows, .row = rows };
-    return DIG_OK;
+    return status;
 }
 
 enum dig_status dig_recording_read(const char *const path, struct dig_recording *const recording,
@@ -153,11 +136,12 @@ enum dig_status dig_recording_read(const char *const path, struct dig_recording 
 {
     assert(path != NULL && recording != NULL);
 
-    struct dig_csv  csv;
-    enum dig_status status =
-        dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, FORCE_COLUMNS, force_column, &csv, error);
+    struct dig_csv        csv;
+    const enum dig_status status = read_rows(path, FORCE_COLUMNS, force_column, &csv, error);
     if (status == DIG_OK) {
-        status = take_force_rows(&csv, path, recording, error);
+        // The values are the rows, which stay.
+        *recording = (struct dig_recording){ .rows = csv.rows, .row = (void *)csv.value };
+        csv.value  = NULL;
         dig_csv_finish(&csv);
     }
     return status;
@@ -174,25 +158,6 @@ static struct dig_sample sample_row(const struct machine_columns *const of, cons
     return sample;
 }
 
-static enum dig_status take_machine_rows(const struct machine_columns *const of,
-                                         const struct dig_csv *const csv, const char *const path,
-                                         struct dig_machine_recording *const recording,
-                                         struct dig_error *const             error)
-{
-    void                 *rows = NULL;
-    const enum dig_status status =
-        make_rows(csv, path, of->column, sizeof(struct dig_sample), &rows, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    struct dig_sample *const row = rows;
-    for (size_t i = 0; i < csv->rows; i++) {
-        row[i] = sample_row(of, csv->value + i * csv->columns);
-    }
-    *recording = (struct dig_machine_recording){ .rows = csv->rows, .row = row };
-    return DIG_OK;
-}
-
 enum dig_status dig_machine_recording_read(const char *const                   path,
                                            struct dig_machine_recording *const recording,
                                            struct dig_error *const             error)
@@ -203,12 +168,20 @@ enum dig_status dig_machine_recording_read(const char *const                   p
     const struct machine_columns of =
         machine_columns(senses ? DIG_SENSING_SENSOR : DIG_SENSING_CYLINDERS);
     struct dig_csv  csv;
-    enum dig_status status =
-        dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, of.count, of.column, &csv, error);
-    if (status == DIG_OK) {
-        status = take_machine_rows(&of, &csv, path, recording, error);
-        dig_csv_finish(&csv);
+    enum dig_status status = read_rows(path, of.count, of.column, &csv, error);
+    if (status != DIG_OK) {
+        return status;
     }
+    struct dig_sample *const row = malloc(csv.rows * sizeof *row);
+    for (size_t i = 0; row != NULL && i < csv.rows; i++) {
+        row[i] = sample_row(&of, csv.value + i * csv.columns);
+    }
+    if (row != NULL) {
+        *recording = (struct dig_machine_recording){ .rows = csv.rows, .row = row };
+    } else {
+        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", path, csv.rows);
+    }
+    dig_csv_finish(&csv);
     return status;
 }
 

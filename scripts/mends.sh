@@ -19,13 +19,13 @@ a path stays in its folder|core/name.c|s/return !up;/return true;/|core/test_nam
 a recording of a campaign stays in its folder|files/campaign_yaml.c|s/!dig_path_stays(name)/false/|files/test_campaign_yaml
 no escape sequence reaches a terminal or a page|core/text.c|s/c.0. < 0x20/c[0] < 0x02/|core/test_text
 nor by the name of a file|core/text.c|s/^    dig_text_clean(text);/    (void)text;/|core/test_text
-no table but our own, no trigger, no view|tables/schema/guard.c|s/status = compare(.*;/status = DIG_OK;/|tables/test_hostile
+no table but our own, no trigger, no view|tables/schema/guard.c|s/^    compare(found.*;//|tables/test_hostile
 a schema is ours word for word|tables/schema/guard.c|s/strcmp(text_at(found, 3), text_at(expected, 3)) != 0/false/|tables/test_hostile
 a journal of several tables deletes nothing|tables/open.c|s/(flags & SQLITE_OPEN_SUPER_JOURNAL) != 0/false/|tables/test_hostile
 a pipe or a link beside a table is not opened|tables/open.c|s/!S_ISREG(found.st_mode)/false/|tables/test_hostile
 a table is the file of its very name|tables/open.c|s,"" : "./","" : "",|tables/test_hostile
 no table is made through a link|tables/store.c|s/O_CREAT . O_EXCL/O_CREAT/|tables/test_hostile
-a flipped bit is found at opening|tables/schema/head.c|s/status = dig_seal_check(db, error)/status = DIG_OK/|tables/test_seal
+a flipped bit is found at opening|tables/schema/head.c|s/dig_seal_check(db);//|tables/test_seal
 aliases that grow are refused|files/yaml/yaml_growth.c|s/GROWTH_MAX 100000 /GROWTH_MAX 100000000 /|files/test_yaml_growth
 directives behind any end of a line are counted|files/yaml/yaml_growth.c|s/, "\\r", .*"\\xE2\\x80\\xA9"//|files/test_yaml_growth
 values without number are refused|files/yaml/yaml_growth.c|s/VALUES_MAX 1000000 /VALUES_MAX 100000000 /|files/test_yaml_growth

@@ -39,18 +39,12 @@ struct scratch {
     struct dig_curve    curve;
 };
 
-static enum dig_status check_entry(struct dig_store *const           store,
-                                   const struct dig_entry_set *const all, const size_t ground,
-                                   const size_t trajectory, struct scratch *const scratch,
-                                   struct dig_error *const error)
+static void check_entry(struct dig_store *const store, const struct dig_entry_set *const all,
+                        const size_t ground, const size_t trajectory, struct scratch *const scratch)
 {
     const size_t                  at = ground * all->trajectories + trajectory;
     const struct dig_entry *const g  = &all->entry[ground];
-    const enum dig_status         status =
-        dig_entry_derive(store, g->ground, trajectory, &scratch->ensemble, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    dig_entry_derive(store, g->ground, trajectory, &scratch->ensemble);
     const size_t runs = scratch->ensemble.packings;
     dig_ensemble_curve(&scratch->ensemble, &scratch->curve);
     const struct dig_curve *const stored = &all->curve[at];
@@ -62,16 +56,14 @@ static enum dig_status check_entry(struct dig_store *const           store,
         const bool varied = g->effect != DIG_EFFECTS;
         char       how[DIG_APPROACH_TEXT_SIZE];
         dig_approach_text(&g->approach, how);
-        return dig_error_set(
-            error, DIG_EINVAL,
-            "%s: entry: friction %g, rolling %g, %g kg/m3%s%s on %s%s: of %d "
-            "packings, differs from its %zu runs, expected their mean and spread; digtable "
-            "merge into a new table makes them anew",
-            store->path, g->gravel.value[0], g->gravel.value[1], g->gravel.value[2],
-            varied ? " with " : "", varied ? dig_effect_name(g->effect) : "",
-            store->head.trajectory[trajectory].name, how, all->packings[at], runs);
+        dig_db_fail(&store->db, DIG_EINVAL,
+                    "entry: friction %g, rolling %g, %g kg/m3%s%s on %s%s: of %d packings, differs "
+                    "from its %zu runs, expected their mean and spread; digtable merge into a new "
+                    "table makes them anew",
+                    g->gravel.value[0], g->gravel.value[1], g->gravel.value[2],
+                    varied ? " with " : "", varied ? dig_effect_name(g->effect) : "",
+                    store->head.trajectory[trajectory].name, how, all->packings[at], runs);
     }
-    return DIG_OK;
 }
 
 // Entries are compared with those of their kind: plain, with an effect, or dug another way.
@@ -150,46 +142,31 @@ static size_t count_holes(const struct dig_curve_set *const set)
     return holes;
 }
 
-static enum dig_status count_builds(const struct dig_store *const store, size_t *const builds,
-                                    struct dig_error *const error)
+static size_t count_builds(struct dig_db *const db)
 {
-    sqlite3_stmt         *s      = NULL;
-    const enum dig_status status = dig_sql_first(
-        &store->db, "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)", &s, error);
-    if (status == DIG_OK) {
-        *builds = (size_t)sqlite3_column_int64(s, 0);
-        (void)sqlite3_finalize(s);
-    }
-    return status;
+    sqlite3_stmt *const s =
+        dig_sql_first(db, "SELECT count(*) FROM (SELECT DISTINCT engine, version FROM run)");
+    const size_t builds = (size_t)sqlite3_column_int64(s, 0);
+    (void)sqlite3_finalize(s);
+    return builds;
 }
 
-static enum dig_status check_all(struct dig_store *const        store,
-                                 struct dig_store_report *const report,
-                                 struct dig_error *const        error)
+static void check_all(struct dig_store *const store, struct dig_store_report *const report)
 {
-    struct dig_entry_set *all = NULL;
-    struct dig_curve_set *set = NULL;
-    enum dig_status       status =
-        dig_grounds_load(&store->db, &store->head, DIG_GROUNDS_ALL, &all, error);
-    if (status == DIG_OK) {
-        status = dig_sql_load(&store->db, &store->head, &set, error);
+    struct dig_db *const        db       = &store->db;
+    struct dig_entry_set *const all      = dig_grounds_load(db, &store->head, DIG_GROUNDS_ALL);
+    struct dig_curve_set *const set      = dig_sql_load(db, &store->head);
+    struct scratch *const       scratch  = calloc(1, sizeof *scratch);
+    const size_t                entries  = all != NULL ? all->entries * all->trajectories : 0;
+    double *const               packings = calloc(entries + 1, sizeof *packings);
+    if (scratch == NULL || packings == NULL) {
+        dig_db_fail(db, DIG_ENOMEM, "no memory");
     }
-    struct scratch *const scratch = calloc(1, sizeof *scratch);
-    double *const         packings =
-        status == DIG_OK ? calloc(all->entries * all->trajectories + 1, sizeof *packings) : NULL;
-    if (status == DIG_OK && (scratch == NULL || packings == NULL)) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+    for (size_t i = 0; db->status == DIG_OK && i < entries; i++) {
+        check_entry(store, all, i / all->trajectories, i % all->trajectories, scratch);
     }
-    for (size_t i = 0; status == DIG_OK && scratch != NULL && i < all->entries * all->trajectories;
-         i++) {
-        status =
-            check_entry(store, all, i / all->trajectories, i % all->trajectories, scratch, error);
-    }
-    struct dig_store_report made = { .entries = 0 };
-    if (status == DIG_OK) {
-        status = count_builds(store, &made.builds, error);
-    }
-    if (status == DIG_OK && set != NULL) {
+    struct dig_store_report made = { .builds = count_builds(db) };
+    if (db->status == DIG_OK) {
         made.holes = count_holes(set);
         made.step  = dig_grounds_step(all, &store->head);
         count_entries(all, packings, &made);
@@ -199,7 +176,6 @@ static enum dig_status check_all(struct dig_store *const        store,
     free(scratch);
     dig_curve_set_destroy(set);
     dig_entry_set_destroy(all);
-    return status;
 }
 
 enum dig_status dig_store_check(struct dig_store *const        store,
@@ -207,12 +183,10 @@ enum dig_status dig_store_check(struct dig_store *const        store,
                                 struct dig_error *const        error)
 {
     assert(store != NULL && report != NULL);
-
+    struct dig_db *const db = dig_store_ask(store, error);
     // One transaction: a writer may be adding runs.
-    enum dig_status status = dig_sql_run(&store->db, "BEGIN", error);
-    if (status == DIG_OK) {
-        status = check_all(store, report, error);
-        (void)sqlite3_exec(store->db.sql, "ROLLBACK", NULL, NULL, NULL);
-    }
-    return status;
+    dig_sql_run(db, "BEGIN");
+    check_all(store, report);
+    (void)sqlite3_exec(db->sql, "ROLLBACK", NULL, NULL, NULL);
+    return db->status;
 }

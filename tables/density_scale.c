@@ -46,20 +46,19 @@ static void copy(const struct dig_entry_set *const from, const size_t i, const d
     }
 }
 
-enum dig_status dig_grounds_spread_density(const struct dig_table_head *const head,
-                                           const char *const                  path,
-                                           struct dig_entry_set **const       grounds,
-                                           size_t *const copies, struct dig_error *const error)
+size_t dig_grounds_spread_density(struct dig_db *const db, const struct dig_table_head *const head,
+                                  struct dig_entry_set **const grounds)
 {
-    assert(head != NULL && grounds != NULL && copies != NULL);
-    *copies                               = 1;
+    assert(head != NULL && grounds != NULL);
     const struct dig_entry_set *const dug = *grounds;
-    if (!head->density_scales || dug->entries == 0 || !is_of_one_density(dug)) {
-        return DIG_OK;
+    if (db->status != DIG_OK || !head->density_scales || dug->entries == 0 ||
+        !is_of_one_density(dug)) {
+        return 1;
     }
     struct dig_entry_set *const made = dig_grounds_create(head, COPIES * dug->entries);
     if (made == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
+        dig_db_fail(db, DIG_ENOMEM, "no memory for the table");
+        return 1;
     }
     size_t at   = 0;
     size_t next = 0;
@@ -75,6 +74,5 @@ enum dig_status dig_grounds_spread_density(const struct dig_table_head *const he
     }
     dig_entry_set_destroy(*grounds);
     *grounds = made;
-    *copies  = COPIES;
-    return DIG_OK;
+    return COPIES;
 }

@@ -7,11 +7,9 @@
 
 /// Where curves go with the density (head) and all grounds are of one: the grounds at 0.6, 1
 /// and 1.6 times it, in the same order, forces, moments and masses in proportion. Else nothing
-/// changes. The copies of a ground hold the same packings: they are one sample, not three. *copies:
-/// how many.
-DIG_MUST_CHECK enum dig_status dig_grounds_spread_density(const struct dig_table_head *head,
-                                                          const char                  *path,
-                                                          struct dig_entry_set       **grounds,
-                                                          size_t *copies, struct dig_error *error);
+/// changes. The copies of a ground hold the same packings: they are one sample, not three. Returns
+/// how many there are. Nothing where the database has failed.
+size_t dig_grounds_spread_density(struct dig_db *db, const struct dig_table_head *head,
+                                  struct dig_entry_set **grounds);
 
 #endif // DIG_TABLES_DENSITY_SCALE_H

@@ -30,13 +30,6 @@
     "instr('," DIG_EFFECTS_OF_MACHINE(LISTED)                                                      \
         DIG_EFFECTS_OF_SOIL(LISTED) "unlisted,', ',' || effect || ',')"
 
-struct loader {
-    const struct dig_db  *db;
-    struct dig_error     *error;
-    const char           *where;
-    struct dig_entry_set *into;
-};
-
 static const char *where_of(const enum dig_grounds_kind kind)
 {
     switch (kind) {
@@ -48,32 +41,25 @@ static const char *where_of(const enum dig_grounds_kind kind)
     return "1";
 }
 
-static enum dig_status prepare(const struct loader *const l, const char *const columns,
-                               const char *const from, const char *const order,
-                               sqlite3_stmt **const s)
+static sqlite3_stmt *prepare(struct dig_db *const db, const enum dig_grounds_kind kind,
+                             const char *const columns, const char *const from,
+                             const char *const order)
 {
     char sql[800];
-    (void)snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE %s %s", columns, from, l->where,
+    (void)snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE %s %s", columns, from, where_of(kind),
                    order);
-    return dig_sql_prepare(l->db, sql, s, l->error);
+    return dig_sql_prepare(db, sql);
 }
 
-static enum dig_status count_rows(const struct loader *const l, size_t *const rows)
+static size_t count_rows(struct dig_db *const db, const enum dig_grounds_kind kind)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = prepare(l, "count(*)", "ground", "", &s);
-    if (status == DIG_OK && sqlite3_step(s) != SQLITE_ROW) {
-        status = dig_sql_refuse(l->db, l->error);
-    }
-    if (status == DIG_OK && sqlite3_column_int64(s, 0) > GROUNDS_MAX) {
-        status = dig_error_set(l->error, DIG_EINVAL, "%s: ground: more than %d rows", l->db->path,
-                               GROUNDS_MAX);
-    }
-    if (status == DIG_OK) {
-        *rows = (size_t)sqlite3_column_int64(s, 0);
+    sqlite3_stmt *const s    = prepare(db, kind, "count(*)", "ground", "");
+    const sqlite3_int64 rows = dig_sql_row(db, s) ? sqlite3_column_int64(s, 0) : 0;
+    if (rows > GROUNDS_MAX) {
+        dig_db_fail(db, DIG_EINVAL, "ground: more than %d rows", GROUNDS_MAX);
     }
     (void)sqlite3_finalize(s);
-    return status;
+    return (size_t)rows;
 }
 
 struct dig_entry_set *dig_grounds_create(const struct dig_table_head *const head,
@@ -98,56 +84,52 @@ struct dig_entry_set *dig_grounds_create(const struct dig_table_head *const head
     return made;
 }
 
-static enum dig_status read_ground(const struct loader *const l, sqlite3_stmt *const s,
-                                   struct dig_entry *const entry)
+static void read_ground(struct dig_db *const db, sqlite3_stmt *const s,
+                        struct dig_entry *const entry)
 {
     entry->ground = sqlite3_column_int64(s, 0);
     for (int a = 0; a < DIG_AXES; a++) {
         const double value     = sqlite3_column_double(s, a + 1);
         entry->gravel.value[a] = value;
         if (!isfinite(value) || value < 0.0) {
-            return dig_error_set(l->error, DIG_EINVAL, "%s: ground.%s: %g, expected >= 0",
-                                 l->db->path, dig_axis_name((enum dig_axis)a), value);
+            dig_db_fail(db, DIG_EINVAL, "ground.%s: %g, expected >= 0",
+                        dig_axis_name((enum dig_axis)a), value);
         }
     }
-    const char *const effect = (const char *)sqlite3_column_text(s, DIG_AXES + 1);
+    const char *const text   = (const char *)sqlite3_column_text(s, DIG_AXES + 1);
+    const char *const effect = text != NULL ? text : "";
+    const int         found  = effect[0] != '\0' ? dig_effect_find(effect) : DIG_EFFECTS;
     entry->magnitude         = sqlite3_column_double(s, DIG_AXES + 2);
-    if (effect == NULL || (effect[0] != '\0' && dig_effect_find(effect) < 0) ||
-        !isfinite(entry->magnitude)) {
-        return dig_error_set(l->error, DIG_EINVAL,
-                             "%s: ground.effect: \"%.40s\" of magnitude %g, expected an effect "
-                             "this program knows, of a finite one",
-                             l->db->path, effect != NULL ? effect : "", entry->magnitude);
+    if (text == NULL || found < 0 || !isfinite(entry->magnitude)) {
+        dig_db_fail(db, DIG_EINVAL,
+                    "ground.effect: \"%.40s\" of magnitude %g, expected an effect this program "
+                    "knows, of a finite one",
+                    effect, entry->magnitude);
     }
-    entry->effect   = effect[0] != '\0' ? (enum dig_effect_id)dig_effect_find(effect) : DIG_EFFECTS;
+    entry->effect   = (enum dig_effect_id)found;
     entry->approach = (struct dig_approach){ sqlite3_column_double(s, DIG_AXES + 3),
                                              sqlite3_column_double(s, DIG_AXES + 4) };
     if (!(entry->approach.depth > 0.0) || !isfinite(entry->approach.attack_rad)) {
-        return dig_error_set(l->error, DIG_EINVAL,
-                             "%s: ground.depth: %g, attack_rad: %g, expected > 0, and finite",
-                             l->db->path, entry->approach.depth, entry->approach.attack_rad);
+        dig_db_fail(db, DIG_EINVAL, "ground.depth: %g, attack_rad: %g, expected > 0, and finite",
+                    entry->approach.depth, entry->approach.attack_rad);
     }
-    return DIG_OK;
 }
 
-static enum dig_status read_grounds(const struct loader *const l)
+static void read_grounds(struct dig_db *const db, const enum dig_grounds_kind kind,
+                         struct dig_entry_set *const into)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = prepare(
-        l, "id, friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad", "ground",
-        "ORDER BY " EFFECT_PLACE ", friction, rolling, density_kgpm3, magnitude, depth, attack_rad",
-        &s);
-    size_t i = 0;
-    while (status == DIG_OK && i < l->into->entries) {
-        if (sqlite3_step(s) != SQLITE_ROW) {
-            status = dig_error_set(l->error, DIG_EINVAL, "%s: ground: fewer rows than counted",
-                                   l->db->path);
-            break;
+    sqlite3_stmt *const s = prepare(
+        db, kind, "id, friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad",
+        "ground",
+        "ORDER BY " EFFECT_PLACE
+        ", friction, rolling, density_kgpm3, magnitude, depth, attack_rad");
+    for (size_t i = 0; db->status == DIG_OK && i < into->entries; i++) {
+        if (!dig_sql_row(db, s)) {
+            dig_db_fail(db, DIG_EINVAL, "ground: fewer rows than counted");
         }
-        status = read_ground(l, s, &l->into->entry[i++]);
+        read_ground(db, s, &into->entry[i]);
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
 static size_t index_of(const struct dig_entry_set *const g, const sqlite3_int64 id)
@@ -171,77 +153,63 @@ static bool read_blob(sqlite3_stmt *const s, const int column, float *const into
     return dig_channels_sound(DIG_CURVE_POINTS, into);
 }
 
-static enum dig_status read_entry(const struct loader *const l, sqlite3_stmt *const s,
-                                  size_t *const hint)
+static void read_entry(struct dig_db *const db, sqlite3_stmt *const s,
+                       struct dig_entry_set *const g, size_t *const hint)
 {
-    struct dig_entry_set *const g          = l->into;
-    const sqlite3_int64         ground     = sqlite3_column_int64(s, 0);
-    const sqlite3_int64         trajectory = sqlite3_column_int64(s, 1);
-    const sqlite3_int64         packings   = sqlite3_column_int64(s, 2);
-
+    const sqlite3_int64 ground     = sqlite3_column_int64(s, 0);
+    const sqlite3_int64 trajectory = sqlite3_column_int64(s, 1);
+    const sqlite3_int64 packings   = sqlite3_column_int64(s, 2);
     // Rows come in the order the grounds were made, which is seldom far from ours.
     const size_t at =
         *hint < g->entries && g->entry[*hint].ground == ground ? *hint : index_of(g, ground);
     *hint = at;
     if (at >= g->entries || trajectory < 0 || trajectory >= (sqlite3_int64)g->trajectories ||
         packings < 1 || packings > PACKINGS_MAX) {
-        return dig_error_set(l->error, DIG_EINVAL,
-                             "%s: entry: expected a ground and a trajectory of the table, "
-                             "packings 1 to %d",
-                             l->db->path, PACKINGS_MAX);
+        dig_db_fail(db, DIG_EINVAL,
+                    "entry: expected a ground and a trajectory of the table, packings 1 to %d",
+                    PACKINGS_MAX);
+        return;
     }
     const size_t            entry = at * g->trajectories + (size_t)trajectory;
     struct dig_curve *const curve = &g->curve[entry];
     if (!read_blob(s, 3, &curve->mean[0][0]) ||
         (packings > 1 && !read_blob(s, 4, &curve->sd[0][0]))) {
-        return dig_error_set(l->error, DIG_EINVAL,
-                             "%s: entry.mean, entry.spread: expected %d finite float32 each",
-                             l->db->path, DIG_CHANNELS * DIG_CURVE_POINTS);
+        dig_db_fail(db, DIG_EINVAL, "entry.mean, entry.spread: expected %d finite float32 each",
+                    DIG_CHANNELS * DIG_CURVE_POINTS);
     }
     g->packings[entry] = (int)packings;
-    return DIG_OK;
 }
 
-static enum dig_status read_entries(const struct loader *const l)
+static void read_entries(struct dig_db *const db, const enum dig_grounds_kind kind,
+                         struct dig_entry_set *const into)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        prepare(l, "ground, trajectory, packings, mean, spread",
-                "entry JOIN ground g ON g.id = entry.ground", "ORDER BY ground, trajectory", &s);
-    size_t hint = 0;
-    while (dig_sql_row(l->db, s, &status, l->error)) {
-        status = read_entry(l, s, &hint);
+    size_t              hint = 0;
+    sqlite3_stmt *const s =
+        prepare(db, kind, "ground, trajectory, packings, mean, spread",
+                "entry JOIN ground g ON g.id = entry.ground", "ORDER BY ground, trajectory");
+    while (dig_sql_row(db, s)) {
+        read_entry(db, s, into, &hint);
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
-enum dig_status dig_grounds_load(const struct dig_db *const         db,
-                                 const struct dig_table_head *const head,
-                                 const enum dig_grounds_kind        kind,
-                                 struct dig_entry_set **const       grounds,
-                                 struct dig_error *const            error)
+struct dig_entry_set *dig_grounds_load(struct dig_db *const               db,
+                                       const struct dig_table_head *const head,
+                                       const enum dig_grounds_kind        kind)
 {
-    struct loader   l      = { db, error, where_of(kind), NULL };
-    size_t          rows   = 0;
-    enum dig_status status = count_rows(&l, &rows);
-    if (status != DIG_OK) {
-        return status;
+    const size_t                rows = count_rows(db, kind);
+    struct dig_entry_set *const into = db->status == DIG_OK ? dig_grounds_create(head, rows) : NULL;
+    if (into == NULL) {
+        dig_db_fail(db, DIG_ENOMEM, "no memory for the table");
+        return NULL;
     }
-    l.into = dig_grounds_create(head, rows);
-    if (l.into == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", db->path);
+    read_grounds(db, kind, into);
+    read_entries(db, kind, into);
+    if (db->status != DIG_OK) {
+        dig_entry_set_destroy(into);
+        return NULL;
     }
-    status = read_grounds(&l);
-    if (status == DIG_OK) {
-        status = read_entries(&l);
-    }
-    if (status != DIG_OK) {
-        dig_entry_set_destroy(l.into);
-        return status;
-    }
-    *grounds = l.into;
-    return DIG_OK;
+    return into;
 }
 
 struct dig_table_step dig_grounds_step(const struct dig_entry_set *const  grounds,

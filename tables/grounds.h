@@ -20,13 +20,10 @@ enum dig_grounds_kind {
 /// Room for these entries, of the table's trajectories; NULL: no memory.
 struct dig_entry_set *dig_grounds_create(const struct dig_table_head *head, size_t entries);
 
-/// Reads and checks them; there may be none. Call it in a transaction. Free with
-/// dig_entry_set_destroy().
-DIG_MUST_CHECK enum dig_status dig_grounds_load(const struct dig_db         *db,
-                                                const struct dig_table_head *head,
-                                                enum dig_grounds_kind        kind,
-                                                struct dig_entry_set       **grounds,
-                                                struct dig_error            *error);
+/// Reads and checks them; there may be none. NULL where the database has failed. Call it in a
+/// transaction. Free with dig_entry_set_destroy().
+struct dig_entry_set *dig_grounds_load(struct dig_db *db, const struct dig_table_head *head,
+                                       enum dig_grounds_kind kind);
 
 /// Gives entries with one packing the spread the others have at the same point of the path,
 /// relative to the curve's rms: variances pooled by their degrees of freedom. others: grounds along

@@ -19,12 +19,6 @@
 
 #define CELLS_MAX 10000000
 
-static enum dig_status no_memory(const char *const path, struct dig_error *const error)
-{
-    (void)dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", path);
-    return DIG_ENOMEM;
-}
-
 // The sorted different values of one axis.
 static void build_axis(struct dig_curve_set *const set, const int a)
 {
@@ -51,21 +45,21 @@ static size_t place_on(const struct dig_curve_set *const set, const int a, const
     return i;
 }
 
-static enum dig_status build_grid(struct dig_curve_set *const set, const char *const path,
-                                  struct dig_error *const error)
+static void build_grid(struct dig_curve_set *const set, struct dig_db *const db)
 {
     size_t cells = 1;
     for (int a = 0; a < DIG_AXES; a++) {
         build_axis(set, a);
         cells *= set->axis_count[a];
         if (cells > CELLS_MAX) {
-            return dig_error_set(error, DIG_EINVAL, "%s: ground: the values do not form a grid",
-                                 path);
+            dig_db_fail(db, DIG_EINVAL, "ground: the values do not form a grid");
+            return;
         }
     }
     set->cell = malloc((cells + 1) * sizeof *set->cell);
     if (set->cell == NULL) {
-        return no_memory(path, error);
+        dig_db_fail(db, DIG_ENOMEM, "no memory for the table");
+        return;
     }
     for (size_t i = 0; i < cells; i++) {
         set->cell[i] = -1;
@@ -77,7 +71,6 @@ static enum dig_status build_grid(struct dig_curve_set *const set, const char *c
         }
         set->cell[at] = (int)i;
     }
-    return DIG_OK;
 }
 
 static void copy_head(struct dig_curve_set *const set, const struct dig_table_head *const head)
@@ -94,15 +87,16 @@ static void copy_head(struct dig_curve_set *const set, const struct dig_table_he
 }
 
 // Takes over what the plain grounds hold.
-static enum dig_status fill(struct dig_curve_set *const set, struct dig_entry_set *const plain,
-                            const char *const path, struct dig_error *const error)
+static void fill(struct dig_curve_set *const set, struct dig_entry_set *const plain,
+                 struct dig_db *const db)
 {
     set->entries    = plain->entries;
     set->packings   = plain->packings;
     set->curve      = plain->curve;
     plain->packings = NULL;
     plain->curve    = NULL;
-    set->gravel     = calloc(set->entries + 1, sizeof *set->gravel);
+
+    set->gravel = calloc(set->entries + 1, sizeof *set->gravel);
     set->outline =
         calloc(DIG_FORCE_CHANNELS * set->entries * set->trajectories + 1, sizeof *set->outline);
     bool complete = set->gravel != NULL && set->outline != NULL;
@@ -111,52 +105,46 @@ static enum dig_status fill(struct dig_curve_set *const set, struct dig_entry_se
         complete     = complete && set->axis[a] != NULL;
     }
     if (!complete) {
-        return no_memory(path, error);
+        dig_db_fail(db, DIG_ENOMEM, "no memory for the table");
+        return;
     }
     for (size_t i = 0; i < set->entries; i++) {
         set->gravel[i] = plain->entry[i].gravel;
     }
     dig_outlines_draw(set);
-    return build_grid(set, path, error);
+    build_grid(set, db);
 }
 
-enum dig_status dig_sql_load(const struct dig_db *const db, const struct dig_table_head *const head,
-                             struct dig_curve_set **const set, struct dig_error *const error)
+struct dig_curve_set *dig_sql_load(struct dig_db *const db, const struct dig_table_head *const head)
 {
-    struct dig_curve_set *const made  = calloc(1, sizeof *made);
-    struct dig_entry_set       *plain = NULL;
+    struct dig_curve_set *made = calloc(1, sizeof *made);
     if (made == NULL) {
-        return no_memory(db->path, error);
+        dig_db_fail(db, DIG_ENOMEM, "no memory for the table");
+        return NULL;
     }
     copy_head(made, head);
-    enum dig_status status = dig_grounds_load(db, head, DIG_GROUNDS_PLAIN, &plain, error);
-    if (status == DIG_OK) {
-        status = dig_grounds_load(db, head, DIG_GROUNDS_APPROACHED, &made->approaches, error);
-    }
-    if (status == DIG_OK) {
+    struct dig_entry_set *plain = dig_grounds_load(db, head, DIG_GROUNDS_PLAIN);
+    made->approaches            = dig_grounds_load(db, head, DIG_GROUNDS_APPROACHED);
+    if (plain != NULL && made->approaches != NULL) {
         dig_grounds_pool_spread(NULL, plain);
         dig_grounds_pool_spread(plain, made->approaches);
-        made->step = dig_grounds_step(plain, head);
-        status =
-            dig_grounds_spread_density(head, db->path, &made->approaches, &made->copies, error);
-    }
-    if (status == DIG_OK) {
-        status = dig_grounds_spread_density(head, db->path, &plain, &made->copies, error);
-    }
-    if (status == DIG_OK) {
-        status = fill(made, plain, db->path, error);
-    }
-    if (status == DIG_OK && made->approaches->entries == 0) {
-        dig_entry_set_destroy(made->approaches);
-        made->approaches = NULL;
+        made->step   = dig_grounds_step(plain, head);
+        made->copies = dig_grounds_spread_density(db, head, &made->approaches);
+        made->copies = dig_grounds_spread_density(db, head, &plain);
+        if (db->status == DIG_OK) {
+            fill(made, plain, db);
+        }
+        if (made->approaches->entries == 0) {
+            dig_entry_set_destroy(made->approaches);
+            made->approaches = NULL;
+        }
     }
     dig_entry_set_destroy(plain);
-    if (status != DIG_OK) {
+    if (db->status != DIG_OK) {
         dig_curve_set_destroy(made);
-        return status;
+        return NULL;
     }
-    *set = made;
-    return DIG_OK;
+    return made;
 }
 
 void dig_curve_set_destroy(struct dig_curve_set *const set)

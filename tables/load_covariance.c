@@ -104,27 +104,21 @@ static enum dig_status take_run(void *const context, const struct dig_run *const
     return DIG_OK;
 }
 
-enum dig_status dig_sql_load_covariance(const struct dig_db *const         db,
-                                        const struct dig_table_head *const head,
-                                        struct dig_curve_set *const        set,
-                                        struct dig_error *const            error)
+void dig_sql_load_covariance(struct dig_db *const db, const struct dig_table_head *const head,
+                             struct dig_curve_set *const set)
 {
     assert(db != NULL && head != NULL && set != NULL && set->covariance == NULL);
     struct dig_covariance *const made = calloc(head->trajectories + 1, sizeof *made);
     if (made == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for the table", db->path);
+        dig_db_fail(db, DIG_ENOMEM, "no memory for the table");
+        return;
     }
     struct pool                  pool    = { .path = db->path, .head = head, .covariance = made };
     const struct dig_run_visitor visitor = { take_run, &pool };
-    const enum dig_status        status =
-        dig_sql_walk(db, head,
-                     "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
-                     "ORDER BY ground, trajectory, packing",
-                     &visitor, error);
-    if (status != DIG_OK) {
-        free(made);
-        return status;
-    }
+    dig_sql_walk(db, head,
+                 "WHERE effect = '' AND depth = 1 AND attack_rad = 0 "
+                 "ORDER BY ground, trajectory, packing",
+                 &visitor);
     close_gravel(&pool.of, made);
     for (size_t t = 0; t < head->trajectories; t++) {
         for (size_t i = 0; i < NUMBERS; i++) {
@@ -134,5 +128,4 @@ enum dig_status dig_sql_load_covariance(const struct dig_db *const         db,
         }
     }
     set->covariance = made;
-    return DIG_OK;
 }

@@ -16,27 +16,25 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
 {
     struct dig_db         db     = { .sql = NULL };
     struct dig_table_head head   = { .trajectories = 0 };
-    enum dig_status       status = dig_sql_open_read(path, &db, &head, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    head.density_scales          = head.density_scales && !as_dug;
-    struct dig_curve_set *set    = NULL;
     struct dig_entry_set *varied = NULL;
-    status                       = dig_sql_load(&db, &head, &set, error);
-    if (status == DIG_OK && set != NULL) {
-        status = dig_sql_load_covariance(&db, &head, set, error);
+    if (dig_sql_open_read(path, &db, &head, error) != DIG_OK) {
+        return db.status;
     }
-    if (status == DIG_OK && effects != NULL) {
-        status = dig_grounds_load(&db, &head, DIG_GROUNDS_VARIED, &varied, error);
+    head.density_scales             = head.density_scales && !as_dug;
+    struct dig_curve_set *const set = dig_sql_load(&db, &head);
+    if (set != NULL) {
+        dig_sql_load_covariance(&db, &head, set);
+    }
+    if (effects != NULL) {
+        varied = dig_grounds_load(&db, &head, DIG_GROUNDS_VARIED);
     }
     if (varied != NULL) {
         dig_grounds_pool_spread(NULL, varied);
     }
     (void)sqlite3_close(db.sql);
-    if (status != DIG_OK) {
+    if (db.status != DIG_OK) {
         dig_curve_set_destroy(set);
-        return status;
+        return db.status;
     }
     *plain = set;
     if (effects != NULL) {

@@ -42,152 +42,119 @@ static const char write_sql[] =
     "g.rolling, g.density_kgpm3, g.effect, g.magnitude, g.depth, g.attack_rad) = (a.friction, "
     "a.rolling, a.density_kgpm3, a.effect, a.magnitude, a.depth, a.attack_rad) ORDER BY 1, 2, 3;";
 
-static enum dig_status run(struct dig_store *const store, const char *const sql,
-                           struct dig_error *const error)
-{
-    return dig_sql_run(&store->db, sql, error);
-}
-
 // Every row that a statement gives of one database becomes one of another's table.
-static enum dig_status copy(const struct dig_db *const from, const char *const select,
-                            const struct dig_db *const to, const char *const insert,
-                            struct dig_error *const error)
+static void copy(struct dig_db *const from, const char *const select, struct dig_db *const to,
+                 const char *const insert)
 {
-    sqlite3_stmt   *row    = NULL;
-    sqlite3_stmt   *into   = NULL;
-    enum dig_status status = dig_sql_prepare(from, select, &row, error);
-    if (status == DIG_OK) {
-        status = dig_sql_prepare(to, insert, &into, error);
-    }
-    while (dig_sql_row(from, row, &status, error)) {
+    sqlite3_stmt *const row  = dig_sql_prepare(from, select);
+    sqlite3_stmt *const into = dig_sql_prepare(to, insert);
+    while (to->status == DIG_OK && dig_sql_row(from, row)) {
         for (int i = 0; i < sqlite3_column_count(row); i++) {
             (void)sqlite3_bind_value(into, i + 1, sqlite3_column_value(row, i));
         }
         if (sqlite3_step(into) != SQLITE_DONE) {
-            status = dig_sql_refuse(to, error);
+            dig_sql_refuse(to);
         }
         (void)sqlite3_reset(into);
     }
     (void)sqlite3_finalize(row);
     (void)sqlite3_finalize(into);
-    return status;
 }
 
 // A run that is gathered already and differs in the input at hand.
-static enum dig_status check_conflict(const struct dig_store *const store, const char *const input,
-                                      struct dig_error *const error)
+static void check_conflict(struct dig_store *const store, const char *const input)
 {
-    const struct dig_db named  = { store->db.sql, input };
-    sqlite3_stmt       *s      = NULL;
-    enum dig_status     status = dig_sql_prepare(&named, conflict_sql, &s, error);
-    if (dig_sql_row(&named, s, &status, error)) {
-        const char *const         effect = (const char *)sqlite3_column_text(s, 3);
-        const bool                plain  = effect == NULL || effect[0] == '\0';
-        const int                 at     = sqlite3_column_int(s, 4);
-        char                      how[DIG_APPROACH_TEXT_SIZE];
+    struct dig_db       named = { store->db.sql, input, store->db.status, store->db.error };
+    sqlite3_stmt *const s     = dig_sql_prepare(&named, conflict_sql);
+    if (dig_sql_row(&named, s)) {
+        const char *const effect = (const char *)sqlite3_column_text(s, 3);
+        const bool        plain  = effect == NULL || effect[0] == '\0';
+        const int         at     = sqlite3_column_int(s, 4);
+        char              how[DIG_APPROACH_TEXT_SIZE];
+
         const struct dig_approach approach = { sqlite3_column_double(s, 6),
                                                sqlite3_column_double(s, 7) };
         dig_approach_text(&approach, how);
-        status = dig_error_set(
-            error, DIG_EINVAL,
-            "%s: run: packing %lld of friction %g, rolling %g, %g kg/m3%s%s on %s%s differs from "
+        dig_db_fail(
+            &named, DIG_EINVAL,
+            "run: packing %lld of friction %g, rolling %g, %g kg/m3%s%s on %s%s differs from "
             "another input's, expected the same run or another",
-            input, (long long)sqlite3_column_int64(s, 5), sqlite3_column_double(s, 0),
+            (long long)sqlite3_column_int64(s, 5), sqlite3_column_double(s, 0),
             sqlite3_column_double(s, 1), sqlite3_column_double(s, 2), plain ? "" : " with ",
             plain ? "" : effect,
             at >= 0 && at < (int)store->head.trajectories ? store->head.trajectory[at].name : "?",
             how);
     }
     (void)sqlite3_finalize(s);
-    return status;
+    store->db.status = named.status;
 }
 
 // Of the first input the store becomes a table of its scene; of any other it has to be that.
-static enum dig_status take_head(struct dig_store *const store, const struct dig_db *const from,
-                                 const char *const input[const], const size_t at,
-                                 const struct dig_table_head *const head,
-                                 struct dig_error *const            error)
+static void take_head(struct dig_store *const store, struct dig_db *const from,
+                      const char *const input[const], const size_t at,
+                      const struct dig_table_head *const head)
 {
     if (at > 0) {
-        return strcmp(head->scene_hash, store->head.scene_hash) == 0
-                   ? DIG_OK
-                   : dig_error_set(error, DIG_EINVAL,
-                                   "%s: scene: holds \"%s\" (%.12s…), expected that of %s, \"%s\" "
-                                   "(%.12s…)",
-                                   input[at], head->scene_name, head->scene_hash, input[0],
-                                   store->head.scene_name, store->head.scene_hash);
+        if (strcmp(head->scene_hash, store->head.scene_hash) != 0) {
+            dig_db_fail(from, DIG_EINVAL,
+                        "scene: holds \"%s\" (%.12s…), expected that of %s, \"%s\" (%.12s…)",
+                        head->scene_name, head->scene_hash, input[0], store->head.scene_name,
+                        store->head.scene_hash);
+        }
+        return;
     }
-    static const char *const copies[][2] = {
-        { "SELECT * FROM scene", "INSERT INTO scene VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)" },
-        { "SELECT * FROM trajectory", "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)" },
-        { "SELECT * FROM phase ORDER BY 1, 2", "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)" },
-    };
-    enum dig_status status = DIG_OK;
-    for (size_t i = 0; status == DIG_OK && i < sizeof copies / sizeof copies[0]; i++) {
-        status = copy(from, copies[i][0], &store->db, copies[i][1], error);
-    }
+    copy(from, "SELECT * FROM scene", &store->db,
+         "INSERT INTO scene VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    copy(from, "SELECT * FROM trajectory", &store->db,
+         "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)");
+    copy(from, "SELECT * FROM phase ORDER BY 1, 2", &store->db,
+         "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)");
     store->head = *head;
-    return status;
 }
 
 // An input's head and runs, in the transaction in which it was found sound: by its name it could be
 // another file a moment later.
-static enum dig_status take(struct dig_store *const store, const char *const input[const],
-                            const size_t at, struct dig_error *const error)
+static void take(struct dig_store *const store, const char *const input[const], const size_t at)
 {
-    struct dig_db         from   = { .sql = NULL };
-    struct dig_table_head head   = { .trajectories = 0 };
-    enum dig_status       status = dig_sql_open_read(input[at], &from, &head, error);
-    if (status == DIG_OK) {
-        status = take_head(store, &from, input, at, &head, error);
-    }
-    if (status == DIG_OK) {
-        status =
-            copy(&from, runs_sql, &store->db,
-                 "INSERT INTO came VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-                 "?)",
-                 error);
+    struct dig_db *const  db   = &store->db;
+    struct dig_db         from = { .sql = NULL };
+    struct dig_table_head head = { .trajectories = 0 };
+    if (dig_sql_open_read(input[at], &from, &head, db->error) == DIG_OK) {
+        take_head(store, &from, input, at, &head);
+        copy(&from, runs_sql, db,
+             "INSERT INTO came VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     }
     (void)sqlite3_close(from.sql);
-    if (status == DIG_OK) {
-        status = check_conflict(store, input[at], error);
-    }
-    return status == DIG_OK ? run(store, take_sql, error) : status;
+    db->status = from.status != DIG_OK ? from.status : db->status;
+    check_conflict(store, input[at]);
+    dig_sql_run(db, take_sql);
 }
 
-static enum dig_status refresh_entries(struct dig_store *const store, struct dig_error *const error)
+static void refresh_entries(struct dig_store *const store)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(
-        &store->db, "SELECT DISTINCT ground, trajectory FROM run ORDER BY 1, 2", &s, error);
-    while (dig_sql_row(&store->db, s, &status, error)) {
-        status = dig_entry_refresh(store, sqlite3_column_int64(s, 0),
-                                   (size_t)sqlite3_column_int64(s, 1), error);
+    struct dig_db *const db = &store->db;
+    sqlite3_stmt *const  s =
+        dig_sql_prepare(db, "SELECT DISTINCT ground, trajectory FROM run ORDER BY 1, 2");
+    while (dig_sql_row(db, s)) {
+        dig_entry_refresh(store, sqlite3_column_int64(s, 0), (size_t)sqlite3_column_int64(s, 1));
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
 static enum dig_status fill(struct dig_store *const store, const size_t inputs,
-                            const char *const input[const], struct dig_error *const error)
+                            const char *const input[const])
 {
-    enum dig_status status = run(store, gather_sql, error);
-    if (status == DIG_OK) {
-        status = run(store, "BEGIN", error);
+    struct dig_db *const db = &store->db;
+    dig_sql_run(db, gather_sql);
+    dig_sql_run(db, "BEGIN");
+    for (size_t i = 0; db->status == DIG_OK && i < inputs; i++) {
+        take(store, input, i);
     }
-    for (size_t i = 0; status == DIG_OK && i < inputs; i++) {
-        status = take(store, input, i, error);
-    }
-    if (status == DIG_OK) {
-        status = run(store, write_sql, error);
-    }
-    if (status == DIG_OK) {
-        status = refresh_entries(store, error);
-    }
-    if (status == DIG_OK) {
-        status = run(store, "COMMIT", error);
-    }
-    return status == DIG_OK ? run(store, "VACUUM", error) : status;
+    dig_sql_run(db, write_sql);
+    refresh_entries(store);
+    dig_sql_run(db, "COMMIT");
+    dig_sql_run(db, "VACUUM");
+    return db->status;
 }
 
 static enum dig_status merge_into(struct dig_store *const store, const size_t inputs,
@@ -197,14 +164,12 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     if (made == NULL || fclose(made) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
-    if (status == DIG_OK) {
-        status = dig_schema_tables(&store->db, DIG_TABLE_VERSION, error);
+    if (dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error) != DIG_OK) {
+        return store->db.status;
     }
-    if (status == DIG_OK) {
-        status = dig_schema_number(&store->db, error);
-    }
-    return status == DIG_OK ? fill(store, inputs, input, error) : status;
+    dig_schema_tables(&store->db, DIG_TABLE_VERSION);
+    dig_schema_number(&store->db);
+    return fill(store, inputs, input);
 }
 
 enum dig_status dig_store_merge(const char *const path, const size_t inputs,

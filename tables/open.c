@@ -54,24 +54,22 @@ enum dig_status dig_sql_open(const char *const path, const int flags, struct dig
                              struct dig_error *const error)
 {
     assert(path != NULL && db != NULL);
-    struct dig_db opened = { .path = path };
-    char          plain[PATH_MAX];
+    *db = (struct dig_db){ .path = path, .error = error };
+    char plain[PATH_MAX];
     if (!plain_path(path, sizeof plain, plain)) {
-        return dig_error_set(error, DIG_EINVAL, "%.200s: no name of a file, expected one", path);
+        return db->status = dig_error_set(error, DIG_EINVAL,
+                                          "%.200s: no name of a file, expected one", path);
     }
     // Where it could not be registered SQLite says so, and opens nothing.
     (void)pthread_once(&registered, guard);
-    if (sqlite3_open_v2(plain, &opened.sql, flags, "digsight") != SQLITE_OK) {
-        (void)dig_error_set(error, DIG_EIO, "%s: %s", path,
-                            opened.sql != NULL ? sqlite3_errmsg(opened.sql) : "no memory");
-        (void)sqlite3_close(opened.sql);
-        return DIG_EIO;
+    if (sqlite3_open_v2(plain, &db->sql, flags, "digsight") != SQLITE_OK) {
+        dig_db_fail(db, DIG_EIO, "%s", db->sql != NULL ? sqlite3_errmsg(db->sql) : "no memory");
+    } else {
+        dig_sql_setup(db);
     }
-    const enum dig_status status = dig_sql_setup(&opened, error);
-    if (status != DIG_OK) {
-        (void)sqlite3_close(opened.sql);
-        return status;
+    if (db->status != DIG_OK) {
+        (void)sqlite3_close(db->sql);
+        db->sql = NULL;
     }
-    *db = opened;
-    return DIG_OK;
+    return db->status;
 }

@@ -10,7 +10,7 @@
 /// restricts the connection as dig_sql_setup() does. Of files beside it only regular ones are
 /// opened, through no link. A journal that names a journal of several databases, which no table of
 /// ours has, is rolled back no further than its own table: SQLite would delete the file so named,
-/// whatever it is.
+/// whatever it is. Where it fails nothing stays open.
 DIG_MUST_CHECK enum dig_status dig_sql_open(const char *path, int flags, struct dig_db *db,
                                             struct dig_error *error);
 

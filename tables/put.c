@@ -84,42 +84,27 @@ static uint8_t *pack_recording(const struct dig_recording *const r)
 }
 
 // Makes the ground's row where there is none yet, and finds its key.
-static enum dig_status make_ground(struct dig_store *const            store,
-                                   const struct dig_run_origin *const origin,
-                                   sqlite3_int64 *const id, struct dig_error *const error)
+static sqlite3_int64 make_ground(struct dig_db *const db, const struct dig_run_origin *const origin)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(
-        &store->db,
-        "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
-        "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) "
-        "ON CONFLICT DO UPDATE SET friction = friction RETURNING id",
-        &s, error);
-    if (status == DIG_OK) {
-        dig_ground_bind(s, origin);
-    }
-    if (dig_sql_row(&store->db, s, &status, error)) {
-        *id = sqlite3_column_int64(s, 0);
-    }
+    sqlite3_stmt *const s = dig_sql_prepare(
+        db, "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
+            "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) "
+            "ON CONFLICT DO UPDATE SET friction = friction RETURNING id");
+    dig_ground_bind(s, origin);
+    const sqlite3_int64 id = dig_sql_row(db, s) ? sqlite3_column_int64(s, 0) : 0;
     (void)sqlite3_finalize(s);
-    return status;
+    return id;
 }
 
-static enum dig_status insert_run(struct dig_store *const store, const sqlite3_int64 ground,
-                                  const struct dig_run_origin *const origin, const size_t windows,
-                                  const double first_s, const double step_s,
-                                  const uint8_t *const bytes, struct dig_error *const error)
+static void insert_run(struct dig_store *const store, const sqlite3_int64 ground,
+                       const struct dig_run_origin *const origin, const size_t windows,
+                       const double first_s, const double step_s, const uint8_t *const bytes)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(
-        &store->db,
-        "INSERT INTO run (ground, trajectory, packing, seed, engine, version, grains, "
-        "windows, first_s, step_s, curve, made_utc, wall_s) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    struct dig_db *const db = &store->db;
+    sqlite3_stmt *const  s =
+        dig_sql_prepare(db, "INSERT INTO run (ground, trajectory, packing, seed, engine, version, "
+                            "grains, windows, first_s, step_s, curve, made_utc, wall_s) "
+                            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     (void)sqlite3_bind_int64(s, 1, ground);
     (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)origin->trajectory);
     (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)origin->packing);
@@ -133,28 +118,25 @@ static enum dig_status insert_run(struct dig_store *const store, const sqlite3_i
     (void)sqlite3_bind_blob64(s, 11, bytes, DIG_CHANNELS * windows * 4, SQLITE_STATIC);
     (void)sqlite3_bind_text(s, 12, origin->made_utc, -1, SQLITE_STATIC);
     (void)sqlite3_bind_double(s, 13, origin->wall_s);
-    const int step = sqlite3_step(s);
+    const int step = db->status == DIG_OK ? sqlite3_step(s) : SQLITE_DONE;
     if (step == SQLITE_CONSTRAINT &&
-        sqlite3_extended_errcode(store->db.sql) == SQLITE_CONSTRAINT_UNIQUE) {
+        sqlite3_extended_errcode(db->sql) == SQLITE_CONSTRAINT_UNIQUE) {
         char how[DIG_APPROACH_TEXT_SIZE];
         dig_approach_text(&origin->approach, how);
-        status = dig_error_set(error, DIG_EINVAL,
-                               "%s: run: packing %zu of friction %g, rolling %g, %g kg/m3%s%s on "
-                               "%s%s is there already, expected a new one",
-                               store->path, origin->packing, origin->gravel.value[0],
-                               origin->gravel.value[1], origin->gravel.value[2],
-                               origin->effect[0] != '\0' ? " with " : "", origin->effect,
-                               store->head.trajectory[origin->trajectory].name, how);
+        dig_db_fail(db, DIG_EINVAL,
+                    "run: packing %zu of friction %g, rolling %g, %g kg/m3%s%s on %s%s is there "
+                    "already, expected a new one",
+                    origin->packing, origin->gravel.value[0], origin->gravel.value[1],
+                    origin->gravel.value[2], origin->effect[0] != '\0' ? " with " : "",
+                    origin->effect, store->head.trajectory[origin->trajectory].name, how);
     } else if (step != SQLITE_DONE) {
-        status = dig_sql_refuse(&store->db, error);
+        dig_sql_refuse(db);
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
-static enum dig_status write_entry(struct dig_store *const store, const sqlite3_int64 ground,
-                                   const size_t trajectory, const struct dig_ensemble *const e,
-                                   struct dig_error *const error)
+static void write_entry(struct dig_db *const db, const sqlite3_int64 ground,
+                        const size_t trajectory, const struct dig_ensemble *const e)
 {
     enum { NUMBERS = DIG_CHANNELS * DIG_CURVE_POINTS };
     struct dig_curve curve;
@@ -163,17 +145,10 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     dig_ensemble_curve(e, &curve);
     dig_floats_pack(NUMBERS, &curve.mean[0][0], mean);
     dig_floats_pack(NUMBERS, &curve.sd[0][0], spread);
-
-    sqlite3_stmt         *s = NULL;
-    const enum dig_status status =
-        dig_sql_prepare(&store->db,
-                        "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
-                        "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO UPDATE "
-                        "SET packings = ?3, mean = ?4, spread = ?5",
-                        &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    sqlite3_stmt *const s =
+        dig_sql_prepare(db, "INSERT INTO entry (ground, trajectory, packings, mean, spread) "
+                            "VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (ground, trajectory) DO "
+                            "UPDATE SET packings = ?3, mean = ?4, spread = ?5");
     (void)sqlite3_bind_int64(s, 1, ground);
     (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)trajectory);
     (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)e->packings);
@@ -181,78 +156,70 @@ static enum dig_status write_entry(struct dig_store *const store, const sqlite3_
     if (e->packings > 1) {
         (void)sqlite3_bind_blob(s, 5, spread, sizeof spread, SQLITE_STATIC);
     }
-    return dig_sql_done(&store->db, s, error);
+    dig_sql_done(db, s);
 }
 
-enum dig_status dig_entry_refresh(struct dig_store *const store, const sqlite3_int64 ground,
-                                  const size_t trajectory, struct dig_error *const error)
+void dig_entry_refresh(struct dig_store *const store, const sqlite3_int64 ground,
+                       const size_t trajectory)
 {
     struct dig_ensemble *const ensemble = calloc(1, sizeof *ensemble);
     if (ensemble == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", store->path);
+        dig_db_fail(&store->db, DIG_ENOMEM, "no memory");
+        return;
     }
-    enum dig_status status = dig_entry_derive(store, ground, trajectory, ensemble, error);
-    if (status == DIG_OK) {
-        status = write_entry(store, ground, trajectory, ensemble, error);
-    }
-    if (status == DIG_OK) {
-        status = dig_seal_write(&store->db, ground, trajectory, error);
-    }
+    dig_entry_derive(store, ground, trajectory, ensemble);
+    write_entry(&store->db, ground, trajectory, ensemble);
+    dig_seal_write(&store->db, ground, trajectory);
     free(ensemble);
-    return status;
-}
-
-// All of it or, when it returns anything but DIG_OK, nothing: the caller rolls back.
-static enum dig_status put_in_transaction(struct dig_store *const            store,
-                                          const struct dig_run_origin *const origin,
-                                          const struct dig_recording *const  recording,
-                                          const double step_s, const uint8_t *const bytes,
-                                          struct dig_error *const error)
-{
-    sqlite3_int64   ground = 0;
-    enum dig_status status = make_ground(store, origin, &ground, error);
-    if (status == DIG_OK) {
-        status = insert_run(store, ground, origin, recording->rows, recording->row[0].t_s, step_s,
-                            bytes, error);
-    }
-    if (status == DIG_OK) {
-        status = dig_entry_refresh(store, ground, origin->trajectory, error);
-    }
-    return status == DIG_OK
-               ? dig_sql_run(&store->db, store->gathers ? "RELEASE run" : "COMMIT", error)
-               : status;
 }
 
 // The first run added to a table of an older version makes it one of today's.
-static enum dig_status upgrade(struct dig_store *const store, struct dig_error *const error)
+static void upgrade(struct dig_store *const store)
 {
-    if (store->head.version == DIG_TABLE_VERSION) {
-        return DIG_OK;
+    if (store->head.version != DIG_TABLE_VERSION) {
+        dig_schema_upgrade(&store->db, store->head.version);
+        store->head.version = store->db.status == DIG_OK ? DIG_TABLE_VERSION : store->head.version;
     }
-    const enum dig_status status = dig_schema_upgrade(&store->db, store->head.version, error);
-    if (status == DIG_OK) {
-        store->head.version = DIG_TABLE_VERSION;
-    }
-    return status;
 }
 
 enum dig_status dig_store_begin(struct dig_store *const store, struct dig_error *const error)
 {
     assert(store != NULL && store->lock_fd >= 0 && !store->gathers);
-    enum dig_status status = upgrade(store, error);
-    if (status == DIG_OK) {
-        status = dig_sql_run(&store->db, "BEGIN IMMEDIATE", error);
-    }
-    store->gathers = status == DIG_OK;
-    return status;
+    struct dig_db *const db = dig_store_ask(store, error);
+    upgrade(store);
+    dig_sql_run(db, "BEGIN IMMEDIATE");
+    store->gathers = db->status == DIG_OK;
+    return db->status;
 }
 
 enum dig_status dig_store_commit(struct dig_store *const store, struct dig_error *const error)
 {
     assert(store != NULL && store->gathers);
-    const enum dig_status status = dig_sql_run(&store->db, "COMMIT", error);
-    store->gathers               = status != DIG_OK;
-    return status;
+    struct dig_db *const db = dig_store_ask(store, error);
+    dig_sql_run(db, "COMMIT");
+    store->gathers = db->status != DIG_OK;
+    return db->status;
+}
+
+// All of it or, where the database has failed, nothing.
+static void put_run(struct dig_store *const store, const struct dig_run_origin *const origin,
+                    const struct dig_recording *const recording, const double step_s,
+                    const uint8_t *const bytes)
+{
+    struct dig_db *const db = &store->db;
+    upgrade(store);
+    dig_sql_run(db, store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE");
+    if (db->status != DIG_OK) {
+        return;
+    }
+    const sqlite3_int64 ground = make_ground(db, origin);
+    insert_run(store, ground, origin, recording->rows, recording->row[0].t_s, step_s, bytes);
+    dig_entry_refresh(store, ground, origin->trajectory);
+    dig_sql_run(db, store->gathers ? "RELEASE run" : "COMMIT");
+    if (db->status != DIG_OK) {
+        (void)sqlite3_exec(db->sql, store->gathers ? "ROLLBACK TO run; RELEASE run" : "ROLLBACK",
+                           NULL, NULL, NULL);
+    }
 }
 
 enum dig_status dig_store_put(struct dig_store *const            store,
@@ -262,7 +229,6 @@ enum dig_status dig_store_put(struct dig_store *const            store,
 {
     assert(store != NULL && origin != NULL && recording != NULL);
     assert(store->lock_fd >= 0 && origin->trajectory < store->head.trajectories);
-
     const size_t rows = recording->rows;
     if (rows < 2 || rows > DIG_WINDOWS_MAX) {
         return dig_error_set(error, DIG_EINVAL, "recording: %zu rows, expected 2 to %d", rows,
@@ -277,23 +243,13 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     if (status != DIG_OK) {
         return status;
     }
-    uint8_t *const bytes = pack_recording(recording);
+    struct dig_db *const db    = dig_store_ask(store, error);
+    uint8_t *const       bytes = pack_recording(recording);
     if (bytes == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory for %zu rows", store->path, rows);
-    }
-    status = upgrade(store, error);
-    if (status == DIG_OK) {
-        status =
-            dig_sql_run(&store->db, store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE", error);
-    }
-    if (status == DIG_OK) {
-        status = put_in_transaction(store, origin, recording, step_s, bytes, error);
-        if (status != DIG_OK) {
-            (void)sqlite3_exec(store->db.sql,
-                               store->gathers ? "ROLLBACK TO run; RELEASE run" : "ROLLBACK", NULL,
-                               NULL, NULL);
-        }
+        dig_db_fail(db, DIG_ENOMEM, "no memory for %zu rows", rows);
+    } else {
+        put_run(store, origin, recording, step_s, bytes);
     }
     free(bytes);
-    return status;
+    return db->status;
 }

@@ -26,25 +26,20 @@ enum dig_status dig_store_has(struct dig_store *const            store,
                               struct dig_error *const error)
 {
     assert(store != NULL && origin != NULL && there != NULL);
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_prepare(
-        &store->db,
-        "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE friction = ?1 "
-        "AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "
-        "AND depth = ?6 AND attack_rad = ?7 AND packing = ?8 AND trajectory = ?9",
-        &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    struct dig_db *const db = dig_store_ask(store, error);
+    sqlite3_stmt *const  s  = dig_sql_prepare(
+          db, "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE friction = ?1 "
+                "AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "
+                "AND depth = ?6 AND attack_rad = ?7 AND packing = ?8 AND trajectory = ?9");
     dig_ground_bind(s, origin);
     (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)origin->packing);
     (void)sqlite3_bind_int64(s, 9, (sqlite3_int64)origin->trajectory);
-    const bool found = dig_sql_row(&store->db, s, &status, error);
-    if (status == DIG_OK) {
+    const bool found = dig_sql_row(db, s);
+    if (db->status == DIG_OK) {
         *there = found;
     }
     (void)sqlite3_finalize(s);
-    return status;
+    return db->status;
 }
 
 // Copies a text column, cut to fit: provenance is for people. False when it holds what no label
@@ -61,10 +56,10 @@ static bool column_label(sqlite3_stmt *const s, const int column, const size_t s
     "friction, rolling, density_kgpm3, packing, trajectory, seed, engine, version, grains, "       \
     "wall_s, made_utc, windows, first_s, step_s, curve, effect, magnitude, depth, attack_rad"
 
-// The row a statement over RUN_COLUMNS stands on; *value is malloc'ed and is run->value.
-static enum dig_status read_run(const char *const path, const struct dig_table_head *const head,
-                                sqlite3_stmt *const s, struct dig_run *const run,
-                                float **const value, struct dig_error *const error)
+// The row a statement over RUN_COLUMNS stands on. Returns run->value, malloc'ed; NULL where it
+// fails.
+static float *read_run(struct dig_db *const db, const struct dig_table_head *const head,
+                       sqlite3_stmt *const s, struct dig_run *const run)
 {
     struct dig_run_origin *const o = &run->origin;
     for (int a = 0; a < DIG_AXES; a++) {
@@ -87,63 +82,56 @@ static enum dig_status read_run(const char *const path, const struct dig_table_h
         (struct dig_approach){ sqlite3_column_double(s, 17), sqlite3_column_double(s, 18) };
     run->first_s = sqlite3_column_double(s, 12);
     run->step_s  = sqlite3_column_double(s, 13);
-
     if (!labels) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: run: engine \"%s\", version \"%s\", made_utc \"%s\", "
-                             "expected " DIG_LABEL_RULE,
-                             path, o->engine, o->version, o->made_utc);
+        dig_db_fail(db, DIG_EINVAL,
+                    "run: engine \"%s\", version \"%s\", made_utc \"%s\", expected " DIG_LABEL_RULE,
+                    o->engine, o->version, o->made_utc);
+        return NULL;
     }
     const uint8_t *const bytes = sqlite3_column_blob(s, 14);
     const int            size  = sqlite3_column_bytes(s, 14);
     if (packing < 0 || trajectory < 0 || trajectory >= (sqlite3_int64)head->trajectories ||
         windows < 2 || windows > DIG_WINDOWS_MAX || size != (int)windows * DIG_CHANNELS * 4 ||
         !(run->step_s > 0.0) || !isfinite(run->step_s) || !isfinite(run->first_s)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: run.curve: %d bytes for %lld windows from %g s by %g s, expected "
-                             "%d each at finite times",
-                             path, size, (long long)windows, run->first_s, run->step_s,
-                             DIG_CHANNELS * 4);
+        dig_db_fail(db, DIG_EINVAL,
+                    "run.curve: %d bytes for %lld windows from %g s by %g s, expected %d each at "
+                    "finite times",
+                    size, (long long)windows, run->first_s, run->step_s, DIG_CHANNELS * 4);
+        return NULL;
     }
     run->windows      = (size_t)windows;
     float *const into = malloc(run->windows * DIG_CHANNELS * sizeof *into);
     if (into == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+        dig_db_fail(db, DIG_ENOMEM, "no memory");
+        return NULL;
     }
     dig_floats_unpack(run->windows * DIG_CHANNELS, bytes, into);
     if (!dig_channels_sound(run->windows, into)) {
-        free(into);
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: run.curve: a number that is not finite, expected finite ones",
-                             path);
+        dig_db_fail(db, DIG_EINVAL, "run.curve: a number that is not finite, expected finite ones");
     }
-    *value     = into;
     run->value = into;
-    return DIG_OK;
+    return into;
 }
 
-enum dig_status dig_sql_walk(const struct dig_db *const db, const struct dig_table_head *const head,
-                             const char *const which, const struct dig_run_visitor *const visitor,
-                             struct dig_error *const error)
+void dig_sql_walk(struct dig_db *const db, const struct dig_table_head *const head,
+                  const char *const which, const struct dig_run_visitor *const visitor)
 {
-    char          sql[500];
-    sqlite3_stmt *s = NULL;
-    const int     length =
+    char      sql[500];
+    const int length =
         snprintf(sql, sizeof sql,
                  "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground %s", which);
     assert(length > 0 && (size_t)length < sizeof sql);
-    enum dig_status status = dig_sql_prepare(db, sql, &s, error);
-    while (dig_sql_row(db, s, &status, error)) {
+    (void)length;
+    sqlite3_stmt *const s = dig_sql_prepare(db, sql);
+    while (dig_sql_row(db, s)) {
         struct dig_run run   = { .windows = 0 };
-        float         *value = NULL;
-        status               = read_run(db->path, head, s, &run, &value, error);
-        if (status == DIG_OK) {
-            status = visitor->visit(visitor->context, &run, error);
+        float *const   value = read_run(db, head, s, &run);
+        if (db->status == DIG_OK) {
+            db->status = visitor->visit(visitor->context, &run, db->error);
         }
         free(value);
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
 enum dig_status dig_store_walk(struct dig_store *const             store,
@@ -151,10 +139,11 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
                                struct dig_error *const             error)
 {
     assert(store != NULL && visitor != NULL);
-    return dig_sql_walk(&store->db, &store->head,
-                        "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, "
-                        "attack_rad, trajectory, packing",
-                        visitor, error);
+    dig_sql_walk(dig_store_ask(store, error), &store->head,
+                 "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad, "
+                 "trajectory, packing",
+                 visitor);
+    return store->db.status;
 }
 
 struct deriving {
@@ -185,9 +174,8 @@ static enum dig_status derive_one(void *const context, const struct dig_run *con
     return DIG_OK;
 }
 
-enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_int64 ground,
-                                 const size_t trajectory, struct dig_ensemble *const ensemble,
-                                 struct dig_error *const error)
+void dig_entry_derive(struct dig_store *const store, const sqlite3_int64 ground,
+                      const size_t trajectory, struct dig_ensemble *const ensemble)
 {
     char                         which[120];
     struct deriving              deriving = { store, ensemble };
@@ -195,5 +183,5 @@ enum dig_status dig_entry_derive(struct dig_store *const store, const sqlite3_in
     *ensemble                             = (struct dig_ensemble){ 0 };
     (void)snprintf(which, sizeof which, "WHERE ground = %lld AND trajectory = %zu ORDER BY packing",
                    (long long)ground, trajectory);
-    return dig_sql_walk(&store->db, &store->head, which, &visitor, error);
+    dig_sql_walk(&store->db, &store->head, which, &visitor);
 }

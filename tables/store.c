@@ -19,47 +19,40 @@
 #define LOCK_TRIES     40 // two seconds: workers of a killed writer need a moment to die
 
 // In one transaction with what is read next: what was checked is what is read.
-static enum dig_status begin_checked(const struct dig_db *const   db,
-                                     struct dig_table_head *const head,
-                                     struct dig_error *const      error)
+static void begin_checked(struct dig_db *const db, struct dig_table_head *const head)
 {
-    const enum dig_status status = dig_sql_run(db, "BEGIN", error);
-    return status == DIG_OK ? dig_schema_check(db, head, error) : status;
+    dig_sql_run(db, "BEGIN");
+    dig_schema_check(db, head);
 }
 
 enum dig_status dig_sql_open_read(const char *const path, struct dig_db *const db,
                                   struct dig_table_head *const head, struct dig_error *const error)
 {
     struct stat file;
+    *db = (struct dig_db){ .path = path, .error = error };
     if (stat(path, &file) != 0) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
+        dig_db_fail(db, DIG_EIO, "%s", strerror(errno));
+        return db->status;
     }
     if (!S_ISREG(file.st_mode)) {
-        return dig_error_set(error, DIG_EINVAL, "%s: not a digsight table, expected a regular file",
-                             path);
+        dig_db_fail(db, DIG_EINVAL, "not a digsight table, expected a regular file");
+        return db->status;
     }
-    struct dig_db   opened = { .sql = NULL };
-    enum dig_status status = dig_sql_open(path, SQLITE_OPEN_READONLY, &opened, error);
-    if (status != DIG_OK) {
-        return status;
+    if (dig_sql_open(path, SQLITE_OPEN_READONLY, db, error) == DIG_OK) {
+        begin_checked(db, head);
     }
-    status = begin_checked(&opened, head, error);
-
     // A journal left by a crash can only be rolled back by one who may write.
-    if (status == DIG_EIO && sqlite3_extended_errcode(opened.sql) == SQLITE_READONLY_ROLLBACK) {
-        (void)sqlite3_close(opened.sql);
-        opened.sql = NULL;
-        status     = dig_sql_open(path, SQLITE_OPEN_READWRITE, &opened, error);
-        if (status == DIG_OK) {
-            status = begin_checked(&opened, head, error);
+    if (db->status == DIG_EIO && sqlite3_extended_errcode(db->sql) == SQLITE_READONLY_ROLLBACK) {
+        (void)sqlite3_close(db->sql);
+        if (dig_sql_open(path, SQLITE_OPEN_READWRITE, db, error) == DIG_OK) {
+            begin_checked(db, head);
         }
     }
-    if (status != DIG_OK) {
-        (void)sqlite3_close(opened.sql);
-        return status;
+    if (db->status != DIG_OK) {
+        (void)sqlite3_close(db->sql);
+        db->sql = NULL;
     }
-    *db = opened;
-    return DIG_OK;
+    return db->status;
 }
 
 static enum dig_status make_store(const char *const path, struct dig_store **const store,
@@ -67,19 +60,23 @@ static enum dig_status make_store(const char *const path, struct dig_store **con
 {
     struct dig_store *const made = calloc(1, sizeof *made);
     if (made == NULL) {
-        (void)dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
-        return DIG_ENOMEM;
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
     }
     made->lock_fd = -1;
     if (strlen(path) >= sizeof made->path) {
         free(made);
-        (void)dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
-        return DIG_EINVAL;
+        return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
     }
     memcpy(made->path, path, strlen(path) + 1);
-    made->db.path = made->path;
-    *store        = made;
+    *store = made;
     return DIG_OK;
+}
+
+struct dig_db *dig_store_ask(struct dig_store *const store, struct dig_error *const error)
+{
+    store->db.status = DIG_OK;
+    store->db.error  = error;
+    return &store->db;
 }
 
 enum dig_status dig_store_open(const char *const path, struct dig_store **const store,
@@ -89,11 +86,12 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
     struct dig_store *made   = NULL;
     enum dig_status   status = make_store(path, &made, error);
     if (status == DIG_OK) {
-        status = dig_sql_open_read(path, &made->db, &made->head, error);
+        status = dig_sql_open_read(made->path, &made->db, &made->head, error);
     }
-    // A reader that stays open must not keep a writer from committing.
     if (status == DIG_OK) {
-        status = dig_sql_run(&made->db, "COMMIT", error);
+        // A reader that stays open must not keep a writer from committing.
+        dig_sql_run(&made->db, "COMMIT");
+        status = made->db.status;
     }
     if (status != DIG_OK) {
         dig_store_close(made);
@@ -154,29 +152,25 @@ static enum dig_status lock(struct dig_store *const store, bool *const created,
     return DIG_OK;
 }
 
-static enum dig_status check_same_scene(const struct dig_store *const store,
-                                        const struct dig_scene *const scene,
-                                        struct dig_error *const       error)
+static void check_same_scene(struct dig_store *const store, const struct dig_scene *const scene)
 {
     struct dig_table_head wanted;
     dig_table_head_of(scene, &wanted);
-    if (strcmp(wanted.scene_hash, store->head.scene_hash) == 0) {
-        return DIG_OK;
+    if (strcmp(wanted.scene_hash, store->head.scene_hash) != 0) {
+        dig_db_fail(&store->db, DIG_EINVAL,
+                    "scene: holds \"%s\" (%.12s…), not \"%s\" (%.12s…), expected the same scene or "
+                    "a new table",
+                    store->head.scene_name, store->head.scene_hash, wanted.scene_name,
+                    wanted.scene_hash);
     }
-    return dig_error_set(error, DIG_EINVAL,
-                         "%s: scene: holds \"%s\" (%.12s…), not \"%s\" (%.12s…), expected the same "
-                         "scene or a new table",
-                         store->path, store->head.scene_name, store->head.scene_hash,
-                         wanted.scene_name, wanted.scene_hash);
 }
 
 // Not before the file is checked: it would write into one that is not ours. A reader that dawdles
 // must not end a computation of hours.
-static enum dig_status prepare_writing(struct dig_store *const store, struct dig_error *const error)
+static void prepare_writing(struct dig_db *const db)
 {
-    (void)sqlite3_busy_timeout(store->db.sql, WRITER_WAIT_ms);
-    return dig_sql_run(&store->db, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;",
-                       error);
+    (void)sqlite3_busy_timeout(db->sql, WRITER_WAIT_ms);
+    dig_sql_run(db, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;");
 }
 
 // A file of length 0 is a table not begun: what a crash between making and filling leaves.
@@ -184,24 +178,23 @@ static enum dig_status open_or_fill(struct dig_store *const       store,
                                     const struct dig_scene *const scene,
                                     struct dig_error *const       error)
 {
-    struct stat file;
+    struct dig_db *const db = &store->db;
+    struct stat          file;
     if (fstat(store->lock_fd, &file) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
-    if (status != DIG_OK) {
-        return status;
+    if (dig_sql_open(store->path, SQLITE_OPEN_READWRITE, db, error) != DIG_OK) {
+        return db->status;
     }
     if (file.st_size == 0) {
-        status = dig_schema_create(&store->db, scene, error);
+        dig_schema_create(db, scene);
     }
-    if (status == DIG_OK) {
-        status = dig_schema_check(&store->db, &store->head, error);
+    dig_schema_check(db, &store->head);
+    if (db->status == DIG_OK) {
+        prepare_writing(db);
+        check_same_scene(store, scene);
     }
-    if (status == DIG_OK) {
-        status = prepare_writing(store, error);
-    }
-    return status == DIG_OK ? check_same_scene(store, scene, error) : status;
+    return db->status;
 }
 
 enum dig_status dig_store_create(const char *const path, const struct dig_scene *const scene,
@@ -234,21 +227,21 @@ enum dig_status dig_store_create(const char *const path, const struct dig_scene 
 
 static enum dig_status seal(struct dig_store *const store, struct dig_error *const error)
 {
+    struct dig_db *const    db = &store->db;
     struct dig_store_report report;
-    enum dig_status status = dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error);
-    if (status == DIG_OK) {
-        status = dig_schema_check(&store->db, &store->head, error);
+    if (dig_sql_open(store->path, SQLITE_OPEN_READWRITE, db, error) != DIG_OK) {
+        return db->status;
     }
-    if (status == DIG_OK) {
-        status = prepare_writing(store, error);
+    dig_schema_check(db, &store->head);
+    if (db->status == DIG_OK) {
+        prepare_writing(db);
     }
     // What is damaged already must not be sealed so.
-    if (status == DIG_OK) {
-        status = dig_store_check(store, &report, error);
+    if (db->status == DIG_OK && dig_store_check(store, &report, error) == DIG_OK &&
+        store->head.version < DIG_TABLE_VERSION) {
+        dig_schema_upgrade(db, store->head.version);
     }
-    return status == DIG_OK && store->head.version < DIG_TABLE_VERSION
-               ? dig_schema_upgrade(&store->db, store->head.version, error)
-               : status;
+    return db->status;
 }
 
 enum dig_status dig_store_seal(const char *const path, bool *const was,

@@ -19,44 +19,39 @@ struct dig_store {
     char                  path[PATH_MAX];
 };
 
+/// What is asked of the store next may fail anew, and says so in *error. Returns its database.
+struct dig_db *dig_store_ask(struct dig_store *store, struct dig_error *error);
+
 /// Opens the file read-only, rolling back first what a crash left half written, begins a
-/// transaction and checks the file in it.
+/// transaction and checks the file in it. Where it fails nothing stays open.
 DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, struct dig_db *db,
                                                  struct dig_table_head *head,
                                                  struct dig_error      *error);
 
 /// What was dug without an effect, from an open database, which should be in a transaction; there
 /// may be no entries. Where one has a single packing, its spread is pooled from all of them that
-/// have more.
-DIG_MUST_CHECK enum dig_status dig_sql_load(const struct dig_db         *db,
-                                            const struct dig_table_head *head,
-                                            struct dig_curve_set **set, struct dig_error *error);
+/// have more. NULL where the database has failed.
+struct dig_curve_set *dig_sql_load(struct dig_db *db, const struct dig_table_head *head);
 
 /// Fills set->covariance from all runs without an effect, as the trajectories stand. Of a gravel
 /// that was dug once nothing is learnt. Reads every such run: 0.1 ms each. DIG_EINVAL: a run that
 /// cannot be one. Call it in a transaction.
-DIG_MUST_CHECK enum dig_status dig_sql_load_covariance(const struct dig_db         *db,
-                                                       const struct dig_table_head *head,
-                                                       struct dig_curve_set        *set,
-                                                       struct dig_error            *error);
+void dig_sql_load_covariance(struct dig_db *db, const struct dig_table_head *head,
+                             struct dig_curve_set *set);
 
 /// Binds the parameters 1 … 7 of a statement to friction, rolling, density, effect, magnitude,
 /// depth and attack.
 void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);
 
 /// Visits the runs that `which`, the end of a statement over `run` and `ground`, says.
-DIG_MUST_CHECK enum dig_status dig_sql_walk(const struct dig_db         *db,
-                                            const struct dig_table_head *head, const char *which,
-                                            const struct dig_run_visitor *visitor,
-                                            struct dig_error             *error);
+void dig_sql_walk(struct dig_db *db, const struct dig_table_head *head, const char *which,
+                  const struct dig_run_visitor *visitor);
 
 /// The mean and spread of all runs of one ground and trajectory, added up by packing.
-DIG_MUST_CHECK enum dig_status dig_entry_derive(struct dig_store *store, sqlite3_int64 ground,
-                                                size_t trajectory, struct dig_ensemble *ensemble,
-                                                struct dig_error *error);
+void dig_entry_derive(struct dig_store *store, sqlite3_int64 ground, size_t trajectory,
+                      struct dig_ensemble *ensemble);
 
 /// Derives one entry and writes it, sealed, in place of what was there.
-DIG_MUST_CHECK enum dig_status dig_entry_refresh(struct dig_store *store, sqlite3_int64 ground,
-                                                 size_t trajectory, struct dig_error *error);
+void dig_entry_refresh(struct dig_store *store, sqlite3_int64 ground, size_t trajectory);
 
 #endif // DIG_TABLES_STORE_PRIVATE_H

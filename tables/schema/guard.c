@@ -8,7 +8,7 @@
 #define LENGTH_MAX 33554432 // of a row: the longest run has half of it
 #define SQL_MAX    65536
 
-enum dig_status dig_sql_setup(const struct dig_db *const db, struct dig_error *const error)
+void dig_sql_setup(struct dig_db *const db)
 {
     static const int off[] = {
         SQLITE_DBCONFIG_TRUSTED_SCHEMA,
@@ -41,8 +41,7 @@ enum dig_status dig_sql_setup(const struct dig_db *const db, struct dig_error *c
         (void)sqlite3_limit(db->sql, limit[i][0], limit[i][1]);
     }
     (void)sqlite3_busy_timeout(db->sql, 5000);
-    return dig_sql_run(
-        db, "PRAGMA foreign_keys = ON; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;", error);
+    dig_sql_run(db, "PRAGMA foreign_keys = ON; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;");
 }
 
 static const char objects_sql[] =
@@ -55,11 +54,10 @@ static const char *text_at(sqlite3_stmt *const s, const int column)
     return text != NULL ? text : "";
 }
 
-static enum dig_status refuse(const char *const path, sqlite3_stmt *const object,
-                              const char *const what, struct dig_error *const error)
+static void refuse(struct dig_db *const db, sqlite3_stmt *const object, const char *const what)
 {
-    return dig_error_set(error, DIG_EINVAL, "%s: schema: %.20s \"%.60s\" is %s", path,
-                         text_at(object, 0), text_at(object, 1), what);
+    dig_db_fail(db, DIG_EINVAL, "schema: %.20s \"%.60s\" is %s", text_at(object, 0),
+                text_at(object, 1), what);
 }
 
 // By type, then name, as both statements are ordered.
@@ -70,59 +68,47 @@ static int order_of(sqlite3_stmt *const a, sqlite3_stmt *const b)
 }
 
 // Both statements give the objects of a database; both end when both are alike.
-static enum dig_status compare(sqlite3_stmt *const found, sqlite3_stmt *const expected,
-                               const struct dig_db *const db, struct dig_error *const error)
+static void compare(sqlite3_stmt *const found, sqlite3_stmt *const expected,
+                    struct dig_db *const db)
 {
-    for (;;) {
+    while (db->status == DIG_OK) {
         const int is     = sqlite3_step(found);
         const int should = sqlite3_step(expected);
         if ((is != SQLITE_ROW && is != SQLITE_DONE) ||
             (should != SQLITE_ROW && should != SQLITE_DONE)) {
-            return dig_sql_refuse(db, error);
+            dig_sql_refuse(db);
+            return;
         }
         if (is == SQLITE_DONE && should == SQLITE_DONE) {
-            return DIG_OK;
+            return;
         }
         const int order = is == SQLITE_DONE       ? 1
                           : should == SQLITE_DONE ? -1
                                                   : order_of(found, expected);
         if (order < 0) {
-            return refuse(db->path, found, "not digtable's, expected its tables alone", error);
-        }
-        if (order > 0) {
-            return refuse(db->path, expected, "missing, expected it", error);
-        }
-        if (strcmp(text_at(found, 2), text_at(expected, 2)) != 0 ||
-            strcmp(text_at(found, 3), text_at(expected, 3)) != 0) {
-            return refuse(db->path, found, "not as digtable makes it, expected that", error);
+            refuse(db, found, "not digtable's, expected its tables alone");
+        } else if (order > 0) {
+            refuse(db, expected, "missing, expected it");
+        } else if (strcmp(text_at(found, 2), text_at(expected, 2)) != 0 ||
+                   strcmp(text_at(found, 3), text_at(expected, 3)) != 0) {
+            refuse(db, found, "not as digtable makes it, expected that");
         }
     }
 }
 
-enum dig_status dig_schema_compare(const struct dig_db *const db, const int version,
-                                   struct dig_error *const error)
+void dig_schema_compare(struct dig_db *const db, const int version)
 {
-    struct dig_db   ours     = { .path = db->path };
-    sqlite3_stmt   *found    = NULL;
-    sqlite3_stmt   *expected = NULL;
-    enum dig_status status   = DIG_OK;
+    struct dig_db ours = { .path = db->path, .status = db->status, .error = db->error };
     if (sqlite3_open_v2(":memory:", &ours.sql, SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY, NULL) !=
         SQLITE_OK) {
-        status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", db->path);
+        dig_db_fail(&ours, DIG_ENOMEM, "no memory");
     }
-    if (status == DIG_OK) {
-        status = dig_schema_tables(&ours, version, error);
-    }
-    if (status == DIG_OK &&
-        (sqlite3_prepare_v2(ours.sql, objects_sql, -1, &expected, NULL) != SQLITE_OK ||
-         sqlite3_prepare_v2(db->sql, objects_sql, -1, &found, NULL) != SQLITE_OK)) {
-        status = dig_sql_refuse(db, error);
-    }
-    if (status == DIG_OK) {
-        status = compare(found, expected, db, error);
-    }
+    dig_schema_tables(&ours, version);
+    sqlite3_stmt *const expected = dig_sql_prepare(&ours, objects_sql);
+    sqlite3_stmt *const found    = dig_sql_prepare(db, objects_sql);
+    db->status                   = ours.status != DIG_OK ? ours.status : db->status;
+    compare(found, expected, db);
     (void)sqlite3_finalize(found);
     (void)sqlite3_finalize(expected);
     (void)sqlite3_close(ours.sql);
-    return status;
 }

@@ -7,7 +7,6 @@
 #include "tables/schema/schema.h"
 #include "tables/schema/seal.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -16,76 +15,52 @@
 #define SMOOTH_MOST_s 60.0
 
 // The one integer a PRAGMA answers.
-static enum dig_status pragma_int(const struct dig_db *const db, const char *const sql,
-                                  int *const value, struct dig_error *const error)
+static int pragma_int(struct dig_db *const db, const char *const sql)
 {
-    sqlite3_stmt         *s      = NULL;
-    const enum dig_status status = dig_sql_first(db, sql, &s, error);
-    if (status == DIG_OK) {
-        *value = sqlite3_column_int(s, 0);
-        (void)sqlite3_finalize(s);
-    }
-    return status;
+    sqlite3_stmt *const s     = dig_sql_first(db, sql);
+    const int           value = sqlite3_column_int(s, 0);
+    (void)sqlite3_finalize(s);
+    return value;
 }
 
-static enum dig_status check_identity(const struct dig_db *const db, int *const version,
-                                      struct dig_error *const error)
+// Returns the version.
+static int check_identity(struct dig_db *const db)
 {
-    int             id     = 0;
-    enum dig_status status = pragma_int(db, "PRAGMA main.application_id", &id, error);
-    if (status == DIG_OK) {
-        status = pragma_int(db, "PRAGMA main.user_version", version, error);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
+    const int id      = pragma_int(db, "PRAGMA main.application_id");
+    const int version = pragma_int(db, "PRAGMA main.user_version");
     if (id != DIG_TABLE_APPLICATION_ID) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: not a digsight table (application_id %d, expected %d)", db->path,
-                             id, DIG_TABLE_APPLICATION_ID);
+        dig_db_fail(db, DIG_EINVAL, "not a digsight table (application_id %d, expected %d)", id,
+                    DIG_TABLE_APPLICATION_ID);
     }
-    if (*version < DIG_TABLE_VERSION_PLAIN || *version > DIG_TABLE_VERSION) {
-        return dig_error_set(error, DIG_ESCHEMA,
-                             "%s: user_version: table format %d, expected %d to %d as this program "
-                             "knows them (the digtable generate command that made the table makes "
-                             "it anew)",
-                             db->path, *version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
+    if (version < DIG_TABLE_VERSION_PLAIN || version > DIG_TABLE_VERSION) {
+        dig_db_fail(db, DIG_ESCHEMA,
+                    "user_version: table format %d, expected %d to %d as this program knows them "
+                    "(the digtable generate command that made the table makes it anew)",
+                    version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
     }
-    return DIG_OK;
+    return version;
 }
 
-static enum dig_status check_integrity(const struct dig_db *const db, struct dig_error *const error)
+static void check_integrity(struct dig_db *const db)
 {
-    sqlite3_stmt   *s      = NULL;
-    enum dig_status status = dig_sql_first(db, "PRAGMA integrity_check(1)", &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    sqlite3_stmt     *s     = dig_sql_first(db, "PRAGMA integrity_check(1)");
     const char *const found = (const char *)sqlite3_column_text(s, 0);
     if (found == NULL || strcmp(found, "ok") != 0) {
         // SQLite says in which database first, on a line of its own.
         const char *const line = found != NULL ? strchr(found, '\n') : NULL;
-        status =
-            dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table", db->path,
-                          line != NULL    ? line + 1
-                          : found != NULL ? found
-                                          : "?");
+        dig_db_fail(db, DIG_EINVAL, "damaged: %s, expected an intact table",
+                    line != NULL    ? line + 1
+                    : found != NULL ? found
+                                    : "?");
     }
     (void)sqlite3_finalize(s);
-
-    if (status != DIG_OK) {
-        return status;
-    }
-    s      = NULL;
-    status = dig_sql_prepare(db, "PRAGMA foreign_key_check", &s, error);
-    if (status == DIG_OK && sqlite3_step(s) == SQLITE_ROW) {
-        status = dig_error_set(error, DIG_EINVAL,
-                               "%s: damaged: a row of %s refers to nothing, expected an intact "
-                               "table",
-                               db->path, (const char *)sqlite3_column_text(s, 0));
+    s = dig_sql_prepare(db, "PRAGMA foreign_key_check");
+    if (dig_sql_row(db, s)) {
+        dig_db_fail(db, DIG_EINVAL,
+                    "damaged: a row of %s refers to nothing, expected an intact table",
+                    (const char *)sqlite3_column_text(s, 0));
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
 // Copies a text column into a name; false when it is missing, too long, or no name.
@@ -104,83 +79,58 @@ static bool positive(const double value)
     return value > 0.0 && isfinite(value);
 }
 
-static enum dig_status damaged(const char *const path, const char *const what,
-                               struct dig_error *const error)
+// The scene's row. Returns its canonical text, malloc'ed; NULL where that fails.
+static char *read_scene(struct dig_db *const db, struct dig_table_head *const head)
 {
-    return dig_error_set(error, DIG_EINVAL, "%s: %s", path, what);
-}
-
-// The scene's row; *canonical is malloc'ed.
-static enum dig_status read_scene(const struct dig_db *const db, struct dig_table_head *const head,
-                                  char **const canonical, struct dig_error *const error)
-{
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        dig_sql_prepare(db,
-                        "SELECT name, hash, canonical, tooth_m, bucket_width_m, young_Pa, "
-                        "smooth_half_s, points FROM scene",
-                        &s, error);
-    if (status != DIG_OK) {
-        return status;
+    sqlite3_stmt *const s =
+        dig_sql_prepare(db, "SELECT name, hash, canonical, tooth_m, bucket_width_m, young_Pa, "
+                            "smooth_half_s, points FROM scene");
+    char *canonical = NULL;
+    if (!dig_sql_row(db, s)) {
+        dig_db_fail(db, DIG_EINVAL, "scene: no row, expected one");
     }
-    if (sqlite3_step(s) != SQLITE_ROW) {
-        (void)sqlite3_finalize(s);
-        return damaged(db->path, "scene: no row, expected one", error);
-    }
-    const char *const hash     = (const char *)sqlite3_column_text(s, 1);
-    const char *const text     = (const char *)sqlite3_column_text(s, 2);
-    head->tooth_m              = sqlite3_column_double(s, 3);
-    head->bucket_width_m       = sqlite3_column_double(s, 4);
-    head->young_Pa             = sqlite3_column_double(s, 5);
-    head->smooth_half_s        = sqlite3_column_double(s, 6);
-    const sqlite3_int64 points = sqlite3_column_int64(s, 7);
-
-    char actual[65] = "";
+    const char *const hash         = (const char *)sqlite3_column_text(s, 1);
+    const char *const text         = (const char *)sqlite3_column_text(s, 2);
+    head->tooth_m                  = sqlite3_column_double(s, 3);
+    head->bucket_width_m           = sqlite3_column_double(s, 4);
+    head->young_Pa                 = sqlite3_column_double(s, 5);
+    head->smooth_half_s            = sqlite3_column_double(s, 6);
+    const sqlite3_int64 points     = sqlite3_column_int64(s, 7);
+    char                actual[65] = "";
     if (text != NULL) {
         dig_sha256_hex(text, strlen(text), actual);
     }
     if (!column_name(s, 0, head->scene_name)) {
-        status =
-            damaged(db->path, "scene.name: expected at most 31 characters: " DIG_NAME_RULE, error);
+        dig_db_fail(db, DIG_EINVAL, "scene.name: expected at most 31 characters: " DIG_NAME_RULE);
     } else if (hash == NULL || text == NULL || strcmp(hash, actual) != 0) {
-        status = dig_error_set(error, DIG_EINVAL,
-                               "%s: scene.hash: %.64s, expected %s, the SHA-256 of scene.canonical",
-                               db->path, hash != NULL ? hash : "nothing", actual);
+        dig_db_fail(db, DIG_EINVAL,
+                    "scene.hash: %.64s, expected %s, the SHA-256 of scene.canonical",
+                    hash != NULL ? hash : "nothing", actual);
     } else if (!positive(head->tooth_m) || !positive(head->bucket_width_m) ||
                !positive(head->young_Pa) ||
                !(head->smooth_half_s >= 0.0 && head->smooth_half_s <= SMOOTH_MOST_s)) {
-        status = damaged(db->path, "scene: tooth_m, bucket_width_m, young_Pa: expected > 0", error);
+        dig_db_fail(db, DIG_EINVAL, "scene: tooth_m, bucket_width_m, young_Pa: expected > 0");
     } else if (points != DIG_CURVE_POINTS) {
-        status = dig_error_set(error, DIG_ESCHEMA, "%s: scene.points: %lld, expected %d", db->path,
-                               (long long)points, DIG_CURVE_POINTS);
+        dig_db_fail(db, DIG_ESCHEMA, "scene.points: %lld, expected %d", (long long)points,
+                    DIG_CURVE_POINTS);
     } else {
         memcpy(head->scene_hash, hash, sizeof head->scene_hash);
-        *canonical = malloc(strlen(text) + 1);
-        if (*canonical == NULL) {
-            status = dig_error_set(error, DIG_ENOMEM, "%s: no memory", db->path);
-        } else {
-            memcpy(*canonical, text, strlen(text) + 1);
+        canonical = strdup(text);
+        if (canonical == NULL) {
+            dig_db_fail(db, DIG_ENOMEM, "no memory");
         }
     }
     (void)sqlite3_finalize(s);
-    return status;
+    return canonical;
 }
 
-static enum dig_status read_trajectories(const struct dig_db *const   db,
-                                         struct dig_table_head *const head,
-                                         struct dig_error *const      error)
+static void read_trajectories(struct dig_db *const db, struct dig_table_head *const head)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        dig_sql_prepare(db,
-                        "SELECT t.id, t.name, theta0_rad, start_x_m, start_z_m, number, p.name, "
-                        "duration_s, vx_mps, vz_mps, omega_radps FROM trajectory t JOIN phase p "
-                        "ON p.trajectory = t.id ORDER BY t.id, number",
-                        &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    while (dig_sql_row(db, s, &status, error)) {
+    sqlite3_stmt *const s = dig_sql_prepare(
+        db, "SELECT t.id, t.name, theta0_rad, start_x_m, start_z_m, number, p.name, duration_s, "
+            "vx_mps, vz_mps, omega_radps FROM trajectory t JOIN phase p ON p.trajectory = t.id "
+            "ORDER BY t.id, number");
+    while (dig_sql_row(db, s)) {
         const sqlite3_int64 id     = sqlite3_column_int64(s, 0);
         const sqlite3_int64 number = sqlite3_column_int64(s, 5);
         if (number == 0) {
@@ -193,8 +143,8 @@ static enum dig_status read_trajectories(const struct dig_db *const   db,
         if (t == NULL || id != (sqlite3_int64)head->trajectories - 1 || number >= DIG_PHASES_MAX ||
             number != (sqlite3_int64)t->phases || !column_name(s, 1, t->name) ||
             !column_name(s, 6, t->phase[t->phases].name)) {
-            status = damaged(db->path,
-                             "trajectory: expected rows numbered from 0, with their phases", error);
+            dig_db_fail(db, DIG_EINVAL,
+                        "trajectory: expected rows numbered from 0, with their phases");
             break;
         }
         struct dig_phase *const p = &t->phase[t->phases++];
@@ -206,14 +156,13 @@ static enum dig_status read_trajectories(const struct dig_db *const   db,
         p->vz_mps                 = sqlite3_column_double(s, 9);
         p->omega_radps            = sqlite3_column_double(s, 10);
         if (!positive(p->duration_s)) {
-            status = damaged(db->path, "phase.duration_s: expected > 0", error);
+            dig_db_fail(db, DIG_EINVAL, "phase.duration_s: expected > 0");
         } else if (!isfinite(t->theta0_rad) || !isfinite(t->start_x_m) || !isfinite(t->start_z_m) ||
                    !isfinite(p->vx_mps) || !isfinite(p->vz_mps) || !isfinite(p->omega_radps)) {
-            status = damaged(db->path, "trajectory, phase: expected finite numbers", error);
+            dig_db_fail(db, DIG_EINVAL, "trajectory, phase: expected finite numbers");
         }
     }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
 // The trajectories stand twice, as rows for people and in the text the hash is of: they must agree.
@@ -271,40 +220,28 @@ static const char plain_ground_sql[] =
     "CREATE TEMP VIEW ground AS SELECT id, friction, rolling, density_kgpm3, effect, magnitude, "
     "1.0 AS depth, 0.0 AS attack_rad FROM main.ground";
 
-enum dig_status dig_schema_check(const struct dig_db *const db, struct dig_table_head *const head,
-                                 struct dig_error *const error)
+void dig_schema_check(struct dig_db *const db, struct dig_table_head *const head)
 {
-    struct dig_table_head read      = { .trajectories = 0 };
-    char                 *canonical = NULL;
-    enum dig_status       status    = check_identity(db, &read.version, error);
-    if (status == DIG_OK) {
-        status = dig_schema_compare(db, read.version, error);
-    }
-    if (status == DIG_OK) {
-        status = check_integrity(db, error);
-    }
-    if (status == DIG_OK) {
-        status = read_scene(db, &read, &canonical, error);
-    }
-    if (status == DIG_OK) {
-        status = read_trajectories(db, &read, error);
-    }
-    if (status == DIG_OK && canonical != NULL && !trajectories_agree(&read, canonical)) {
-        status = damaged(
-            db->path, "trajectory: the rows differ from scene.canonical, expected the same", error);
-    }
-    if (status == DIG_OK && canonical != NULL) {
+    struct dig_table_head read = { .version = check_identity(db) };
+    dig_schema_compare(db, read.version);
+    check_integrity(db);
+    char *const canonical = read_scene(db, &read);
+    read_trajectories(db, &read);
+    if (canonical != NULL && db->status == DIG_OK) {
+        if (!trajectories_agree(&read, canonical)) {
+            dig_db_fail(db, DIG_EINVAL,
+                        "trajectory: the rows differ from scene.canonical, expected the same");
+        }
         read_canonical(&read, canonical);
     }
     free(canonical);
-    if (status == DIG_OK && read.version == DIG_TABLE_VERSION_PLAIN) {
-        status = dig_sql_run(db, plain_ground_sql, error);
+    if (read.version == DIG_TABLE_VERSION_PLAIN) {
+        dig_sql_run(db, plain_ground_sql);
     }
-    if (status == DIG_OK && read.version >= DIG_TABLE_VERSION) {
-        status = dig_seal_check(db, error);
+    if (read.version >= DIG_TABLE_VERSION) {
+        dig_seal_check(db);
     }
-    if (status == DIG_OK) {
+    if (db->status == DIG_OK) {
         *head = read;
     }
-    return status;
 }

@@ -2,6 +2,7 @@
 
 #include "tables/schema/seal.h"
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -72,76 +73,82 @@ static const char plain_ground_sql[] =
     "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude)"
     ") STRICT;";
 
-enum dig_status dig_sql_refuse(const struct dig_db *const db, struct dig_error *const error)
+void dig_db_fail(struct dig_db *const db, const enum dig_status status, const char *const format,
+                 ...)
 {
-    const int code = sqlite3_errcode(db->sql);
-    if (code == SQLITE_NOMEM) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", db->path);
+    struct dig_error what;
+    va_list          args;
+    va_start(args, format);
+    (void)vsnprintf(what.text, sizeof what.text, format, args);
+    va_end(args);
+    if (db->status == DIG_OK) {
+        db->status = dig_error_set(db->error, status, "%s: %s", db->path, what.text);
     }
-    if (code == SQLITE_NOTADB) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: not a digsight table, expected a file made by digtable",
-                             db->path);
-    }
-    if (code == SQLITE_CORRUPT) {
-        return dig_error_set(error, DIG_EINVAL, "%s: damaged: %s, expected an intact table",
-                             db->path, sqlite3_errmsg(db->sql));
-    }
+}
+
+void dig_sql_refuse(struct dig_db *const db)
+{
+    const int code     = sqlite3_errcode(db->sql);
     const int extended = sqlite3_extended_errcode(db->sql);
-    if (code == SQLITE_CANTOPEN || extended == SQLITE_IOERR_SHMOPEN ||
-        extended == SQLITE_IOERR_SHMSIZE || extended == SQLITE_IOERR_SHMMAP) {
-        return dig_error_set(error, DIG_EIO,
-                             "%s: it, or a journal beside it, cannot be opened, expected regular "
-                             "files and a journal of this table alone",
-                             db->path);
+    if (code == SQLITE_NOMEM) {
+        dig_db_fail(db, DIG_ENOMEM, "no memory");
+    } else if (code == SQLITE_NOTADB) {
+        dig_db_fail(db, DIG_EINVAL, "not a digsight table, expected a file made by digtable");
+    } else if (code == SQLITE_CORRUPT) {
+        dig_db_fail(db, DIG_EINVAL, "damaged: %s, expected an intact table",
+                    sqlite3_errmsg(db->sql));
+    } else if (code == SQLITE_CANTOPEN || extended == SQLITE_IOERR_SHMOPEN ||
+               extended == SQLITE_IOERR_SHMSIZE || extended == SQLITE_IOERR_SHMMAP) {
+        dig_db_fail(db, DIG_EIO,
+                    "it, or a journal beside it, cannot be opened, expected regular files and a "
+                    "journal of this table alone");
+    } else {
+        dig_db_fail(db, DIG_EIO, "%s", sqlite3_errmsg(db->sql));
     }
-    return dig_error_set(error, DIG_EIO, "%s: %s", db->path, sqlite3_errmsg(db->sql));
 }
 
-enum dig_status dig_sql_run(const struct dig_db *const db, const char *const sql,
-                            struct dig_error *const error)
+void dig_sql_run(struct dig_db *const db, const char *const sql)
 {
-    return sqlite3_exec(db->sql, sql, NULL, NULL, NULL) == SQLITE_OK ? DIG_OK
-                                                                     : dig_sql_refuse(db, error);
-}
-
-enum dig_status dig_sql_prepare(const struct dig_db *const db, const char *const sql,
-                                sqlite3_stmt **const s, struct dig_error *const error)
-{
-    return sqlite3_prepare_v2(db->sql, sql, -1, s, NULL) == SQLITE_OK ? DIG_OK
-                                                                      : dig_sql_refuse(db, error);
-}
-
-enum dig_status dig_sql_first(const struct dig_db *const db, const char *const sql,
-                              sqlite3_stmt **const s, struct dig_error *const error)
-{
-    if (sqlite3_prepare_v2(db->sql, sql, -1, s, NULL) == SQLITE_OK &&
-        sqlite3_step(*s) == SQLITE_ROW) {
-        return DIG_OK;
+    if (db->status == DIG_OK && sqlite3_exec(db->sql, sql, NULL, NULL, NULL) != SQLITE_OK) {
+        dig_sql_refuse(db);
     }
-    const enum dig_status status = dig_sql_refuse(db, error);
-    (void)sqlite3_finalize(*s);
-    *s = NULL;
-    return status;
 }
 
-bool dig_sql_row(const struct dig_db *const db, sqlite3_stmt *const s,
-                 enum dig_status *const status, struct dig_error *const error)
+sqlite3_stmt *dig_sql_prepare(struct dig_db *const db, const char *const sql)
 {
-    const int step = *status == DIG_OK ? sqlite3_step(s) : SQLITE_DONE;
+    sqlite3_stmt *s = NULL;
+    if (db->status == DIG_OK && sqlite3_prepare_v2(db->sql, sql, -1, &s, NULL) != SQLITE_OK) {
+        dig_sql_refuse(db);
+    }
+    return s;
+}
+
+sqlite3_stmt *dig_sql_first(struct dig_db *const db, const char *const sql)
+{
+    sqlite3_stmt *const s = dig_sql_prepare(db, sql);
+    if (dig_sql_row(db, s)) {
+        return s;
+    }
+    dig_sql_refuse(db);
+    (void)sqlite3_finalize(s);
+    return NULL;
+}
+
+bool dig_sql_row(struct dig_db *const db, sqlite3_stmt *const s)
+{
+    const int step = db->status == DIG_OK ? sqlite3_step(s) : SQLITE_DONE;
     if (step != SQLITE_ROW && step != SQLITE_DONE) {
-        *status = dig_sql_refuse(db, error);
+        dig_sql_refuse(db);
     }
     return step == SQLITE_ROW;
 }
 
-enum dig_status dig_sql_done(const struct dig_db *const db, sqlite3_stmt *const s,
-                             struct dig_error *const error)
+void dig_sql_done(struct dig_db *const db, sqlite3_stmt *const s)
 {
-    const enum dig_status status =
-        sqlite3_step(s) == SQLITE_DONE ? DIG_OK : dig_sql_refuse(db, error);
+    if (db->status == DIG_OK && sqlite3_step(s) != SQLITE_DONE) {
+        dig_sql_refuse(db);
+    }
     (void)sqlite3_finalize(s);
-    return status;
 }
 
 void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_head *const head)
@@ -158,21 +165,14 @@ void dig_table_head_of(const struct dig_scene *const scene, struct dig_table_hea
     dig_scene_hash(scene, head->scene_hash);
 }
 
-static enum dig_status insert_scene(const struct dig_db *const    db,
-                                    const struct dig_scene *const scene,
-                                    struct dig_error *const       error)
+static void insert_scene(struct dig_db *const db, const struct dig_scene *const scene)
 {
     struct dig_table_head head;
     char                  text[DIG_SCENE_TEXT_SIZE];
     dig_scene_canonical(scene, text);
     dig_table_head_of(scene, &head);
-
-    sqlite3_stmt         *s = NULL;
-    const enum dig_status status =
-        dig_sql_prepare(db, "INSERT INTO scene VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    sqlite3_stmt *const s =
+        dig_sql_prepare(db, "INSERT INTO scene VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)");
     (void)sqlite3_bind_text(s, 1, head.scene_name, -1, SQLITE_STATIC);
     (void)sqlite3_bind_text(s, 2, head.scene_hash, -1, SQLITE_STATIC);
     (void)sqlite3_bind_text(s, 3, text, -1, SQLITE_STATIC);
@@ -181,31 +181,22 @@ static enum dig_status insert_scene(const struct dig_db *const    db,
     (void)sqlite3_bind_double(s, 6, head.young_Pa);
     (void)sqlite3_bind_double(s, 7, head.smooth_half_s);
     (void)sqlite3_bind_int(s, 8, DIG_CURVE_POINTS);
-    return dig_sql_done(db, s, error);
+    dig_sql_done(db, s);
 }
 
-static enum dig_status insert_trajectory(const struct dig_db *const db, const int id,
-                                         const struct dig_trajectory *const t,
-                                         struct dig_error *const            error)
+static void insert_trajectory(struct dig_db *const db, const int id,
+                              const struct dig_trajectory *const t)
 {
-    sqlite3_stmt   *s = NULL;
-    enum dig_status status =
-        dig_sql_prepare(db, "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)", &s, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    sqlite3_stmt *s = dig_sql_prepare(db, "INSERT INTO trajectory VALUES (?, ?, ?, ?, ?)");
     (void)sqlite3_bind_int(s, 1, id);
     (void)sqlite3_bind_text(s, 2, t->name, -1, SQLITE_STATIC);
     (void)sqlite3_bind_double(s, 3, t->theta0_rad);
     (void)sqlite3_bind_double(s, 4, t->start_x_m);
     (void)sqlite3_bind_double(s, 5, t->start_z_m);
-    status = dig_sql_done(db, s, error);
-    for (size_t i = 0; status == DIG_OK && i < t->phases; i++) {
+    dig_sql_done(db, s);
+    for (size_t i = 0; i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
-        status = dig_sql_prepare(db, "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)", &s, error);
-        if (status != DIG_OK) {
-            return status;
-        }
+        s = dig_sql_prepare(db, "INSERT INTO phase VALUES (?, ?, ?, ?, ?, ?, ?)");
         (void)sqlite3_bind_int(s, 1, id);
         (void)sqlite3_bind_int(s, 2, (int)i);
         (void)sqlite3_bind_text(s, 3, p->name, -1, SQLITE_STATIC);
@@ -213,55 +204,39 @@ static enum dig_status insert_trajectory(const struct dig_db *const db, const in
         (void)sqlite3_bind_double(s, 5, p->vx_mps);
         (void)sqlite3_bind_double(s, 6, p->vz_mps);
         (void)sqlite3_bind_double(s, 7, p->omega_radps);
-        status = dig_sql_done(db, s, error);
+        dig_sql_done(db, s);
     }
-    return status;
 }
 
-enum dig_status dig_schema_tables(const struct dig_db *const db, const int version,
-                                  struct dig_error *const error)
+void dig_schema_tables(struct dig_db *const db, const int version)
 {
     static const char ground_sql[] = DIG_GROUND_SQL("ground");
-    enum dig_status   status       = dig_sql_run(db, common_sql, error);
-    if (status == DIG_OK) {
-        status = dig_sql_run(db, version == DIG_TABLE_VERSION_PLAIN ? plain_ground_sql : ground_sql,
-                             error);
+    dig_sql_run(db, common_sql);
+    dig_sql_run(db, version == DIG_TABLE_VERSION_PLAIN ? plain_ground_sql : ground_sql);
+    if (version >= DIG_TABLE_VERSION) {
+        dig_sql_run(db, DIG_SEAL_SQL);
     }
-    return status == DIG_OK && version >= DIG_TABLE_VERSION ? dig_sql_run(db, DIG_SEAL_SQL, error)
-                                                            : status;
 }
 
-enum dig_status dig_schema_number(const struct dig_db *const db, struct dig_error *const error)
+void dig_schema_number(struct dig_db *const db)
 {
     char ids[128];
     (void)snprintf(ids, sizeof ids, "PRAGMA application_id = %d; PRAGMA user_version = %d;",
                    DIG_TABLE_APPLICATION_ID, DIG_TABLE_VERSION);
-    return dig_sql_run(db, ids, error);
+    dig_sql_run(db, ids);
 }
 
-enum dig_status dig_schema_create(const struct dig_db *const    db,
-                                  const struct dig_scene *const scene,
-                                  struct dig_error *const       error)
+void dig_schema_create(struct dig_db *const db, const struct dig_scene *const scene)
 {
-    enum dig_status status = dig_sql_run(db, "BEGIN IMMEDIATE", error);
-    if (status != DIG_OK) {
-        return status;
+    dig_sql_run(db, "BEGIN IMMEDIATE");
+    dig_schema_tables(db, DIG_TABLE_VERSION);
+    dig_schema_number(db);
+    insert_scene(db, scene);
+    for (size_t i = 0; i < scene->trajectories; i++) {
+        insert_trajectory(db, (int)i, &scene->trajectory[i]);
     }
-    status = dig_schema_tables(db, DIG_TABLE_VERSION, error);
-    if (status == DIG_OK) {
-        status = dig_schema_number(db, error);
-    }
-    if (status == DIG_OK) {
-        status = insert_scene(db, scene, error);
-    }
-    for (size_t i = 0; status == DIG_OK && i < scene->trajectories; i++) {
-        status = insert_trajectory(db, (int)i, &scene->trajectory[i], error);
-    }
-    if (status == DIG_OK) {
-        status = dig_sql_run(db, "COMMIT", error);
-    }
-    if (status != DIG_OK) {
+    dig_sql_run(db, "COMMIT");
+    if (db->status != DIG_OK) {
         (void)sqlite3_exec(db->sql, "ROLLBACK", NULL, NULL, NULL);
     }
-    return status;
 }

@@ -44,70 +44,68 @@ struct dig_table_head {
     int                   version;        // of the file
 };
 
-/// An open database, and its file's name, which lives as long.
+/// An open database, and its file's name, which lives as long. What fails first stays, in status
+/// and *error: every step behind it does nothing, so that steps stand one behind the other and the
+/// status is asked once, where they end.
 struct dig_db {
-    sqlite3    *sql;
-    const char *path;
+    sqlite3          *sql;
+    const char       *path;
+    enum dig_status   status;
+    struct dig_error *error; // of who asked last; NULL: nobody wants the words
 };
 
 /// What a scene's table says of itself.
 void dig_table_head_of(const struct dig_scene *scene, struct dig_table_head *head);
 
-/// *error becomes "PATH: what SQLite says"; the status is that of a failed call.
-enum dig_status dig_sql_refuse(const struct dig_db *db, struct dig_error *error);
+/// The database has failed: *error becomes "PATH: " and what is formatted. Nothing, where it had
+/// before.
+__attribute__((format(printf, 3, 4))) void dig_db_fail(struct dig_db *db, enum dig_status status,
+                                                       const char *format, ...);
+
+/// The same with what SQLite says, and the status of a failed call.
+void dig_sql_refuse(struct dig_db *db);
 
 /// Settings of every connection, before anything is read: a file from elsewhere is not trusted. It
 /// runs no triggers, views or functions of its own, nor has more, or larger, than a table needs.
-DIG_MUST_CHECK enum dig_status dig_sql_setup(const struct dig_db *db, struct dig_error *error);
+void dig_sql_setup(struct dig_db *db);
 
 /// Runs statements that return no rows.
-DIG_MUST_CHECK enum dig_status dig_sql_run(const struct dig_db *db, const char *sql,
-                                           struct dig_error *error);
+void dig_sql_run(struct dig_db *db, const char *sql);
 
-/// Prepares a statement. On failure too *s is for sqlite3_finalize().
-DIG_MUST_CHECK enum dig_status dig_sql_prepare(const struct dig_db *db, const char *sql,
-                                               sqlite3_stmt **s, struct dig_error *error);
+/// Prepares a statement; finalize it. NULL where the database has failed: to bind, to read and to
+/// finalize that is harmless, and it has no row.
+sqlite3_stmt *dig_sql_prepare(struct dig_db *db, const char *sql);
 
-/// Prepares a statement and steps to its first row, which there must be. On failure it is
-/// finalized.
-DIG_MUST_CHECK enum dig_status dig_sql_first(const struct dig_db *db, const char *sql,
-                                             sqlite3_stmt **s, struct dig_error *error);
+/// Prepares a statement and steps to its first row, which there must be.
+sqlite3_stmt *dig_sql_first(struct dig_db *db, const char *sql);
 
-/// Where *status is DIG_OK, steps to the next row. False at the end, and when that fails, which
-/// *status then says.
-bool dig_sql_row(const struct dig_db *db, sqlite3_stmt *s, enum dig_status *status,
-                 struct dig_error *error);
+/// Steps to the next row. False at the end, and where the database has failed.
+bool dig_sql_row(struct dig_db *db, sqlite3_stmt *s);
 
 /// Runs a statement that gives no rows, and finalizes it.
-DIG_MUST_CHECK enum dig_status dig_sql_done(const struct dig_db *db, sqlite3_stmt *s,
-                                            struct dig_error *error);
+void dig_sql_done(struct dig_db *db, sqlite3_stmt *s);
 
 /// Makes an empty database a table of this version without rows; its number is not written.
-DIG_MUST_CHECK enum dig_status dig_schema_tables(const struct dig_db *db, int version,
-                                                 struct dig_error *error);
+void dig_schema_tables(struct dig_db *db, int version);
 
 /// Writes application_id and user_version.
-DIG_MUST_CHECK enum dig_status dig_schema_number(const struct dig_db *db, struct dig_error *error);
+void dig_schema_number(struct dig_db *db);
 
 /// Makes an empty database the table of this scene, in one transaction.
-DIG_MUST_CHECK enum dig_status
-dig_schema_create(const struct dig_db *db, const struct dig_scene *scene, struct dig_error *error);
+void dig_schema_create(struct dig_db *db, const struct dig_scene *scene);
 
 /// Refuses a file whose schema is not, word for word, that of a table of this version.
-DIG_MUST_CHECK enum dig_status dig_schema_compare(const struct dig_db *db, int version,
-                                                  struct dig_error *error);
+void dig_schema_compare(struct dig_db *db, int version);
 
 /// Refuses what is no table (DIG_EINVAL), a version not known (DIG_ESCHEMA, all named), and a
 /// damaged file; then reads the head, and compares every entry and its runs with their seal
 /// (tables/schema/seal.h). Writes *head on success only. Reads the whole file. From then on the
 /// connection reads `ground` with depth and attack_rad whatever the file's version: where the file
 /// has none, in a temporary view. What it found holds for what is read in the same transaction.
-DIG_MUST_CHECK enum dig_status
-dig_schema_check(const struct dig_db *db, struct dig_table_head *head, struct dig_error *error);
+void dig_schema_check(struct dig_db *db, struct dig_table_head *head);
 
 /// Makes a table of an older version one of ours: digs without an approach become plain, entries
 /// are sealed. In no transaction; all or nothing.
-DIG_MUST_CHECK enum dig_status dig_schema_upgrade(const struct dig_db *db, int version,
-                                                  struct dig_error *error);
+void dig_schema_upgrade(struct dig_db *db, int version);
 
 #endif // DIG_TABLES_SCHEMA_SCHEMA_H

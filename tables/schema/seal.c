@@ -19,18 +19,16 @@ static const char runs_sql[] =
 
 // Both statements, used again for one entry after the other.
 struct sealer {
-    const struct dig_db *db;
-    sqlite3_stmt        *entry, *runs;
-    struct dig_error    *error;
+    struct dig_db *db;
+    sqlite3_stmt  *entry, *runs;
 };
 
-static enum dig_status begin(struct sealer *const s)
+static struct sealer begin(struct dig_db *const db)
 {
-    const enum dig_status status = dig_sql_prepare(s->db, entry_sql, &s->entry, s->error);
-    return status == DIG_OK ? dig_sql_prepare(s->db, runs_sql, &s->runs, s->error) : status;
+    return (struct sealer){ db, dig_sql_prepare(db, entry_sql), dig_sql_prepare(db, runs_sql) };
 }
 
-static void end(struct sealer *const s)
+static void end(const struct sealer *const s)
 {
     (void)sqlite3_finalize(s->entry);
     (void)sqlite3_finalize(s->runs);
@@ -70,137 +68,101 @@ static void add_row(struct dig_sha256 *const hash, sqlite3_stmt *const s)
 }
 
 // Adds all rows of a statement bound to an entry.
-static enum dig_status add_rows(const struct sealer *const s, sqlite3_stmt *const rows,
-                                const sqlite3_int64 ground, const sqlite3_int64 trajectory,
-                                struct dig_sha256 *const hash)
+static void add_rows(const struct sealer *const s, sqlite3_stmt *const rows,
+                     const sqlite3_int64 ground, const sqlite3_int64 trajectory,
+                     struct dig_sha256 *const hash)
 {
     (void)sqlite3_reset(rows);
     (void)sqlite3_bind_int64(rows, 1, ground);
     (void)sqlite3_bind_int64(rows, 2, trajectory);
-    enum dig_status status = DIG_OK;
-    while (dig_sql_row(s->db, rows, &status, s->error)) {
+    while (dig_sql_row(s->db, rows)) {
         add_row(hash, rows);
     }
-    return status;
 }
 
-static enum dig_status sum_of(const struct sealer *const s, const sqlite3_int64 ground,
-                              const sqlite3_int64 trajectory, sqlite3_int64 *const sum)
+static sqlite3_int64 sum_of(const struct sealer *const s, const sqlite3_int64 ground,
+                            const sqlite3_int64 trajectory)
 {
     struct dig_sha256 hash;
     dig_sha256_init(&hash);
-    enum dig_status status = add_rows(s, s->entry, ground, trajectory, &hash);
-    if (status == DIG_OK) {
-        status = add_rows(s, s->runs, ground, trajectory, &hash);
-    }
-    if (status == DIG_OK) {
-        *sum = (sqlite3_int64)dig_sha256_finish_number(&hash);
-    }
-    return status;
+    add_rows(s, s->entry, ground, trajectory, &hash);
+    add_rows(s, s->runs, ground, trajectory, &hash);
+    return (sqlite3_int64)dig_sha256_finish_number(&hash);
 }
 
-static enum dig_status write_one(const struct sealer *const s, const sqlite3_int64 ground,
-                                 const sqlite3_int64 trajectory)
+static void write_one(const struct sealer *const s, const sqlite3_int64 ground,
+                      const sqlite3_int64 trajectory)
 {
-    sqlite3_stmt   *into   = NULL;
-    sqlite3_int64   sum    = 0;
-    enum dig_status status = sum_of(s, ground, trajectory, &sum);
-    if (status == DIG_OK) {
-        status = dig_sql_prepare(s->db,
-                                 "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
-                                 "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3",
-                                 &into, s->error);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
+    const sqlite3_int64 sum = sum_of(s, ground, trajectory);
+    sqlite3_stmt *const into =
+        dig_sql_prepare(s->db, "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
+                               "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3");
     (void)sqlite3_bind_int64(into, 1, ground);
     (void)sqlite3_bind_int64(into, 2, trajectory);
     (void)sqlite3_bind_int64(into, 3, sum);
-    return dig_sql_done(s->db, into, s->error);
+    dig_sql_done(s->db, into);
 }
 
-enum dig_status dig_seal_write(const struct dig_db *const db, const sqlite3_int64 ground,
-                               const size_t trajectory, struct dig_error *const error)
+void dig_seal_write(struct dig_db *const db, const sqlite3_int64 ground, const size_t trajectory)
 {
-    struct sealer   s      = { .db = db, .error = error };
-    enum dig_status status = begin(&s);
-    if (status == DIG_OK) {
-        status = write_one(&s, ground, (sqlite3_int64)trajectory);
-    }
+    const struct sealer s = begin(db);
+    write_one(&s, ground, (sqlite3_int64)trajectory);
     end(&s);
-    return status;
 }
 
-static enum dig_status check_one(const struct sealer *const s, sqlite3_stmt *const entry)
+static void check_one(const struct sealer *const s, sqlite3_stmt *const entry)
 {
-    sqlite3_int64       sum        = 0;
     const sqlite3_int64 ground     = sqlite3_column_int64(entry, 0);
     const sqlite3_int64 trajectory = sqlite3_column_int64(entry, 1);
-    enum dig_status     status     = sum_of(s, ground, trajectory, &sum);
-    if (status == DIG_OK && (sqlite3_column_type(entry, 2) != SQLITE_INTEGER ||
-                             sqlite3_column_int64(entry, 2) != sum)) {
-        status = dig_error_set(s->error, DIG_EINVAL,
-                               "%s: damaged: entry of ground %lld on trajectory %lld, or one of "
-                               "its runs, is not what was stored, expected what its seal says",
-                               s->db->path, (long long)ground, (long long)trajectory);
+    const sqlite3_int64 sum        = sum_of(s, ground, trajectory);
+    if (sqlite3_column_type(entry, 2) != SQLITE_INTEGER || sqlite3_column_int64(entry, 2) != sum) {
+        dig_db_fail(s->db, DIG_EINVAL,
+                    "damaged: entry of ground %lld on trajectory %lld, or one of its runs, is not "
+                    "what was stored, expected what its seal says",
+                    (long long)ground, (long long)trajectory);
     }
-    return status;
 }
 
 // Does something to every entry.
-static enum dig_status each(const struct sealer *const s, const char *const sql,
-                            enum dig_status (*const what)(const struct sealer *, sqlite3_stmt *))
+static void each(const struct sealer *const s, const char *const sql,
+                 void (*const what)(const struct sealer *, sqlite3_stmt *))
 {
-    sqlite3_stmt   *entry  = NULL;
-    enum dig_status status = dig_sql_prepare(s->db, sql, &entry, s->error);
-    while (dig_sql_row(s->db, entry, &status, s->error)) {
-        status = what(s, entry);
+    sqlite3_stmt *const entry = dig_sql_prepare(s->db, sql);
+    while (dig_sql_row(s->db, entry)) {
+        what(s, entry);
     }
     (void)sqlite3_finalize(entry);
-    return status;
 }
 
-static enum dig_status write_of(const struct sealer *const s, sqlite3_stmt *const entry)
+static void write_of(const struct sealer *const s, sqlite3_stmt *const entry)
 {
-    return write_one(s, sqlite3_column_int64(entry, 0), sqlite3_column_int64(entry, 1));
+    write_one(s, sqlite3_column_int64(entry, 0), sqlite3_column_int64(entry, 1));
 }
 
-enum dig_status dig_seal_write_all(const struct dig_db *const db, struct dig_error *const error)
+void dig_seal_write_all(struct dig_db *const db)
 {
-    struct sealer   s      = { .db = db, .error = error };
-    enum dig_status status = begin(&s);
-    if (status == DIG_OK) {
-        status = each(&s, "SELECT ground, trajectory FROM entry ORDER BY 1, 2", write_of);
-    }
+    const struct sealer s = begin(db);
+    each(&s, "SELECT ground, trajectory FROM entry ORDER BY 1, 2", write_of);
     end(&s);
-    return status;
 }
 
-static enum dig_status refuse_run(const struct sealer *const s, sqlite3_stmt *const run)
+static void refuse_run(const struct sealer *const s, sqlite3_stmt *const run)
 {
-    return dig_error_set(s->error, DIG_EINVAL,
-                         "%s: damaged: run %lld is of no entry, expected one of its ground and "
-                         "trajectory",
-                         s->db->path, (long long)sqlite3_column_int64(run, 0));
+    dig_db_fail(s->db, DIG_EINVAL,
+                "damaged: run %lld is of no entry, expected one of its ground and trajectory",
+                (long long)sqlite3_column_int64(run, 0));
 }
 
-enum dig_status dig_seal_check(const struct dig_db *const db, struct dig_error *const error)
+void dig_seal_check(struct dig_db *const db)
 {
-    struct sealer   s      = { .db = db, .error = error };
-    enum dig_status status = begin(&s);
-    if (status == DIG_OK) {
-        status = each(&s,
-                      "SELECT e.ground, e.trajectory, s.sum FROM entry e LEFT JOIN seal s ON "
-                      "s.ground = e.ground AND s.trajectory = e.trajectory ORDER BY 1, 2",
-                      check_one);
-    }
-    if (status == DIG_OK) {
-        status = each(&s,
-                      "SELECT r.id FROM run r LEFT JOIN entry e ON e.ground = r.ground AND "
-                      "e.trajectory = r.trajectory WHERE e.ground IS NULL LIMIT 1",
-                      refuse_run);
-    }
+    const struct sealer s = begin(db);
+    each(&s,
+         "SELECT e.ground, e.trajectory, s.sum FROM entry e LEFT JOIN seal s ON s.ground = "
+         "e.ground AND s.trajectory = e.trajectory ORDER BY 1, 2",
+         check_one);
+    each(&s,
+         "SELECT r.id FROM run r LEFT JOIN entry e ON e.ground = r.ground AND e.trajectory = "
+         "r.trajectory WHERE e.ground IS NULL LIMIT 1",
+         refuse_run);
     end(&s);
-    return status;
 }

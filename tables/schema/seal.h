@@ -25,14 +25,13 @@
     ") STRICT;"
 
 /// Seals one entry as it and its runs stand, in place of what was there.
-DIG_MUST_CHECK enum dig_status dig_seal_write(const struct dig_db *db, sqlite3_int64 ground,
-                                              size_t trajectory, struct dig_error *error);
+void dig_seal_write(struct dig_db *db, sqlite3_int64 ground, size_t trajectory);
 
 /// Seals every entry.
-DIG_MUST_CHECK enum dig_status dig_seal_write_all(const struct dig_db *db, struct dig_error *error);
+void dig_seal_write_all(struct dig_db *db);
 
 /// Refuses an entry that is not sealed, or is not, with its runs, what was sealed, and a run
 /// without an entry: DIG_EINVAL, the first one named. Reads every run.
-DIG_MUST_CHECK enum dig_status dig_seal_check(const struct dig_db *db, struct dig_error *error);
+void dig_seal_check(struct dig_db *db);
 
 #endif // DIG_TABLES_SCHEMA_SEAL_H

@@ -14,35 +14,18 @@ static const char approach_sql[] = "DROP VIEW temp.ground;" DIG_GROUND_SQL("grou
     "DROP TABLE main.ground;"
     "ALTER TABLE ground_new RENAME TO ground;";
 
-static enum dig_status upgrade(const struct dig_db *const db, const int version,
-                               struct dig_error *const error)
+void dig_schema_upgrade(struct dig_db *const db, const int version)
 {
-    enum dig_status status = dig_sql_run(db, "BEGIN IMMEDIATE", error);
-    if (status == DIG_OK && version == DIG_TABLE_VERSION_PLAIN) {
-        status = dig_sql_run(db, approach_sql, error);
+    dig_sql_run(db, "PRAGMA foreign_keys = OFF; BEGIN IMMEDIATE");
+    if (version == DIG_TABLE_VERSION_PLAIN) {
+        dig_sql_run(db, approach_sql);
     }
-    if (status == DIG_OK) {
-        status = dig_sql_run(db, DIG_SEAL_SQL, error);
-    }
-    if (status == DIG_OK) {
-        status = dig_seal_write_all(db, error);
-    }
-    if (status == DIG_OK) {
-        status = dig_schema_number(db, error);
-    }
-    return status == DIG_OK ? dig_sql_run(db, "COMMIT", error) : status;
-}
-
-enum dig_status dig_schema_upgrade(const struct dig_db *const db, const int version,
-                                   struct dig_error *const error)
-{
-    enum dig_status status = dig_sql_run(db, "PRAGMA foreign_keys = OFF", error);
-    if (status == DIG_OK) {
-        status = upgrade(db, version, error);
-    }
-    if (status != DIG_OK) {
+    dig_sql_run(db, DIG_SEAL_SQL);
+    dig_seal_write_all(db);
+    dig_schema_number(db);
+    dig_sql_run(db, "COMMIT");
+    if (db->status != DIG_OK) {
         (void)sqlite3_exec(db->sql, "ROLLBACK", NULL, NULL, NULL);
-        return status;
     }
-    return dig_sql_run(db, "PRAGMA foreign_keys = ON", error);
+    dig_sql_run(db, "PRAGMA foreign_keys = ON");
 }
