@@ -14,12 +14,9 @@ static enum dig_status read_table(const char *const path, const bool as_dug,
                                   struct dig_entry_set **const effects,
                                   struct dig_error *const      error)
 {
-    struct dig_db         db     = { .sql = NULL };
-    struct dig_table_head head   = { .trajectories = 0 };
-    struct dig_entry_set *varied = NULL;
-    if (dig_sql_open_read(path, &db, &head, error) != DIG_OK) {
-        return db.status;
-    }
+    struct dig_table_head head      = { .trajectories = 0 };
+    struct dig_db         db        = dig_sql_open_read(path, &head, error);
+    struct dig_entry_set *varied    = NULL;
     head.density_scales             = head.density_scales && !as_dug;
     struct dig_curve_set *const set = dig_sql_load(&db, &head);
     if (set != NULL) {

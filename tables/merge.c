@@ -117,9 +117,9 @@ static void take_head(struct dig_store *const store, struct dig_db *const from,
 static void take(struct dig_store *const store, const char *const input[const], const size_t at)
 {
     struct dig_db *const  db   = &store->db;
-    struct dig_db         from = { .sql = NULL };
     struct dig_table_head head = { .trajectories = 0 };
-    if (dig_sql_open_read(input[at], &from, &head, db->error) == DIG_OK) {
+    struct dig_db         from = dig_sql_open_read(input[at], &head, db->error);
+    if (from.status == DIG_OK) {
         take_head(store, &from, input, at, &head);
         copy(&from, runs_sql, db,
              "INSERT INTO came VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
@@ -164,9 +164,8 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     if (made == NULL || fclose(made) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
     }
-    if (dig_sql_open(store->path, SQLITE_OPEN_READWRITE, &store->db, error) != DIG_OK) {
-        return store->db.status;
-    }
+    store->db = (struct dig_db){ .path = store->path, .error = error };
+    dig_sql_open(&store->db, SQLITE_OPEN_READWRITE);
     dig_schema_tables(&store->db, DIG_TABLE_VERSION);
     dig_schema_number(&store->db);
     return fill(store, inputs, input);

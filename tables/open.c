@@ -50,26 +50,22 @@ static bool plain_path(const char *const path, const size_t size, char plain[con
     return path[0] != '\0' && length > 0 && (size_t)length < size;
 }
 
-enum dig_status dig_sql_open(const char *const path, const int flags, struct dig_db *const db,
-                             struct dig_error *const error)
+void dig_sql_open(struct dig_db *const db, const int flags)
 {
-    assert(path != NULL && db != NULL);
-    *db = (struct dig_db){ .path = path, .error = error };
+    assert(db != NULL && db->path != NULL);
     char plain[PATH_MAX];
-    if (!plain_path(path, sizeof plain, plain)) {
-        return db->status = dig_error_set(error, DIG_EINVAL,
-                                          "%.200s: no name of a file, expected one", path);
+    if (db->status != DIG_OK) {
+        return;
+    }
+    if (!plain_path(db->path, sizeof plain, plain)) {
+        db->status = dig_error_set(db->error, DIG_EINVAL, "%.200s: no name of a file, expected one",
+                                   db->path);
+        return;
     }
     // Where it could not be registered SQLite says so, and opens nothing.
     (void)pthread_once(&registered, guard);
     if (sqlite3_open_v2(plain, &db->sql, flags, "digsight") != SQLITE_OK) {
         dig_db_fail(db, DIG_EIO, "%s", db->sql != NULL ? sqlite3_errmsg(db->sql) : "no memory");
-    } else {
-        dig_sql_setup(db);
     }
-    if (db->status != DIG_OK) {
-        (void)sqlite3_close(db->sql);
-        db->sql = NULL;
-    }
-    return db->status;
+    dig_sql_setup(db);
 }

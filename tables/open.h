@@ -6,12 +6,11 @@
 
 #include "tables/schema/schema.h"
 
-/// Opens the file of that very name, whatever SQLite would read in it, with SQLite's flags, and
+/// Opens the file of its very name, whatever SQLite would read in it, with SQLite's flags, and
 /// restricts the connection as dig_sql_setup() does. Of files beside it only regular ones are
 /// opened, through no link. A journal that names a journal of several databases, which no table of
 /// ours has, is rolled back no further than its own table: SQLite would delete the file so named,
-/// whatever it is. Where it fails nothing stays open.
-DIG_MUST_CHECK enum dig_status dig_sql_open(const char *path, int flags, struct dig_db *db,
-                                            struct dig_error *error);
+/// whatever it is. The owner of *db closes db->sql, also where this fails.
+void dig_sql_open(struct dig_db *db, int flags);
 
 #endif // DIG_TABLES_OPEN_H

@@ -28,12 +28,9 @@ enum dig_status dig_table_scene(const char *const path, struct dig_scene *const 
                                 struct dig_error *const error)
 {
     assert(path != NULL && scene != NULL);
-    struct dig_db         db   = { .sql = NULL };
     struct dig_table_head head = { .trajectories = 0 };
-    if (dig_sql_open_read(path, &db, &head, error) != DIG_OK) {
-        return db.status;
-    }
-    struct dig_scene read = { .trajectories = head.trajectories };
+    struct dig_db         db   = dig_sql_open_read(path, &head, error);
+    struct dig_scene      read = { .trajectories = head.trajectories };
     memcpy(read.name, head.scene_name, sizeof read.name);
     memcpy(read.trajectory, head.trajectory, sizeof read.trajectory);
     read_canonical(&db, &read);

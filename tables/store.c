@@ -25,34 +25,26 @@ static void begin_checked(struct dig_db *const db, struct dig_table_head *const 
     dig_schema_check(db, head);
 }
 
-enum dig_status dig_sql_open_read(const char *const path, struct dig_db *const db,
-                                  struct dig_table_head *const head, struct dig_error *const error)
+struct dig_db dig_sql_open_read(const char *const path, struct dig_table_head *const head,
+                                struct dig_error *const error)
 {
-    struct stat file;
-    *db = (struct dig_db){ .path = path, .error = error };
+    struct dig_db db = { .path = path, .error = error };
+    struct stat   file;
     if (stat(path, &file) != 0) {
-        dig_db_fail(db, DIG_EIO, "%s", strerror(errno));
-        return db->status;
+        dig_db_fail(&db, DIG_EIO, "%s", strerror(errno));
+    } else if (!S_ISREG(file.st_mode)) {
+        dig_db_fail(&db, DIG_EINVAL, "not a digsight table, expected a regular file");
     }
-    if (!S_ISREG(file.st_mode)) {
-        dig_db_fail(db, DIG_EINVAL, "not a digsight table, expected a regular file");
-        return db->status;
-    }
-    if (dig_sql_open(path, SQLITE_OPEN_READONLY, db, error) == DIG_OK) {
-        begin_checked(db, head);
-    }
+    dig_sql_open(&db, SQLITE_OPEN_READONLY);
+    begin_checked(&db, head);
     // A journal left by a crash can only be rolled back by one who may write.
-    if (db->status == DIG_EIO && sqlite3_extended_errcode(db->sql) == SQLITE_READONLY_ROLLBACK) {
-        (void)sqlite3_close(db->sql);
-        if (dig_sql_open(path, SQLITE_OPEN_READWRITE, db, error) == DIG_OK) {
-            begin_checked(db, head);
-        }
+    if (db.status == DIG_EIO && sqlite3_extended_errcode(db.sql) == SQLITE_READONLY_ROLLBACK) {
+        (void)sqlite3_close(db.sql);
+        db = (struct dig_db){ .path = path, .error = error };
+        dig_sql_open(&db, SQLITE_OPEN_READWRITE);
+        begin_checked(&db, head);
     }
-    if (db->status != DIG_OK) {
-        (void)sqlite3_close(db->sql);
-        db->sql = NULL;
-    }
-    return db->status;
+    return db;
 }
 
 static enum dig_status make_store(const char *const path, struct dig_store **const store,
@@ -68,7 +60,8 @@ static enum dig_status make_store(const char *const path, struct dig_store **con
         return dig_error_set(error, DIG_EINVAL, "%s: the name is too long", path);
     }
     memcpy(made->path, path, strlen(path) + 1);
-    *store = made;
+    made->db = (struct dig_db){ .path = made->path, .error = error };
+    *store   = made;
     return DIG_OK;
 }
 
@@ -85,14 +78,13 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
     assert(path != NULL && store != NULL);
     struct dig_store *made   = NULL;
     enum dig_status   status = make_store(path, &made, error);
-    if (status == DIG_OK) {
-        status = dig_sql_open_read(made->path, &made->db, &made->head, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (status == DIG_OK) {
-        // A reader that stays open must not keep a writer from committing.
-        dig_sql_run(&made->db, "COMMIT");
-        status = made->db.status;
-    }
+    made->db = dig_sql_open_read(made->path, &made->head, error);
+    // A reader that stays open must not keep a writer from committing.
+    dig_sql_run(&made->db, "COMMIT");
+    status = made->db.status;
     if (status != DIG_OK) {
         dig_store_close(made);
         return status;
@@ -114,42 +106,39 @@ static int open_or_make(const char *const path, bool *const made)
     return fd >= 0 || errno != EEXIST ? fd : open(path, O_RDWR | O_CLOEXEC); // another's, by now
 }
 
-// SQLite locks byte ranges by fcntl; this is the other kind, for the whole life of a writer.
-static enum dig_status lock(struct dig_store *const store, bool *const created,
-                            struct dig_error *const error)
+// SQLite locks byte ranges by fcntl; this is the other kind, for the whole life of a writer. True:
+// the file was made for it.
+static bool lock(struct dig_store *const store)
 {
-    bool made      = false;
-    store->lock_fd = open_or_make(store->path, &made);
+    struct dig_db *const db   = &store->db;
+    bool                 made = false;
+    store->lock_fd            = open_or_make(store->path, &made);
     if (store->lock_fd < 0) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+        dig_db_fail(db, DIG_EIO, "%s", strerror(errno));
+        return false;
     }
     const struct timespec pause = { .tv_nsec = LOCK_PAUSE_ns };
     for (int tries = 0; flock(store->lock_fd, LOCK_EX | LOCK_NB) != 0; tries++) {
         if (errno != EWOULDBLOCK && errno != EINTR) {
-            return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+            dig_db_fail(db, DIG_EIO, "%s", strerror(errno));
+            return false;
         }
         if (tries >= LOCK_TRIES) {
-            return dig_error_set(error, DIG_EIO,
-                                 "%s: another process is adding to this table, expected one writer",
-                                 store->path);
+            dig_db_fail(db, DIG_EIO,
+                        "another process is adding to this table, expected one writer");
+            return false;
         }
         (void)nanosleep(&pause, NULL);
     }
-
     struct stat file;
     struct stat named;
     if (fstat(store->lock_fd, &file) != 0 || !S_ISREG(file.st_mode)) {
-        return dig_error_set(error, DIG_EINVAL, "%s: not a digsight table, expected a regular file",
-                             store->path);
-    }
-    if (file.st_size == 0 && lstat(store->path, &named) == 0 && S_ISLNK(named.st_mode)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "%s: a link to an empty file, expected a table or a new file",
-                             store->path);
+        dig_db_fail(db, DIG_EINVAL, "not a digsight table, expected a regular file");
+    } else if (file.st_size == 0 && lstat(store->path, &named) == 0 && S_ISLNK(named.st_mode)) {
+        dig_db_fail(db, DIG_EINVAL, "a link to an empty file, expected a table or a new file");
     }
     // Not ours to remove if another writer filled it while we waited.
-    *created = made && file.st_size == 0;
-    return DIG_OK;
+    return db->status == DIG_OK && made && file.st_size == 0;
 }
 
 static void check_same_scene(struct dig_store *const store, const struct dig_scene *const scene)
@@ -174,18 +163,17 @@ static void prepare_writing(struct dig_db *const db)
 }
 
 // A file of length 0 is a table not begun: what a crash between making and filling leaves.
-static enum dig_status open_or_fill(struct dig_store *const       store,
-                                    const struct dig_scene *const scene,
-                                    struct dig_error *const       error)
+static void open_or_fill(struct dig_store *const store, const struct dig_scene *const scene)
 {
     struct dig_db *const db = &store->db;
     struct stat          file;
-    if (fstat(store->lock_fd, &file) != 0) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", store->path, strerror(errno));
+    if (db->status == DIG_OK && fstat(store->lock_fd, &file) != 0) {
+        dig_db_fail(db, DIG_EIO, "%s", strerror(errno));
     }
-    if (dig_sql_open(store->path, SQLITE_OPEN_READWRITE, db, error) != DIG_OK) {
-        return db->status;
+    if (db->status != DIG_OK) {
+        return;
     }
+    dig_sql_open(db, SQLITE_OPEN_READWRITE);
     if (file.st_size == 0) {
         dig_schema_create(db, scene);
     }
@@ -194,26 +182,21 @@ static enum dig_status open_or_fill(struct dig_store *const       store,
         prepare_writing(db);
         check_same_scene(store, scene);
     }
-    return db->status;
 }
 
 enum dig_status dig_store_create(const char *const path, const struct dig_scene *const scene,
                                  struct dig_store **const store, struct dig_error *const error)
 {
     assert(path != NULL && scene != NULL && store != NULL);
-    enum dig_status status = dig_scene_check(scene, error);
+    struct dig_store *made   = NULL;
+    enum dig_status   status = dig_scene_check(scene, error);
+    status                   = status == DIG_OK ? make_store(path, &made, error) : status;
     if (status != DIG_OK) {
         return status;
     }
-    struct dig_store *made    = NULL;
-    bool              created = false;
-    status                    = make_store(path, &made, error);
-    if (status == DIG_OK) {
-        status = lock(made, &created, error);
-    }
-    if (status == DIG_OK) {
-        status = open_or_fill(made, scene, error);
-    }
+    const bool created = lock(made);
+    open_or_fill(made, scene);
+    status = made->db.status;
     if (status != DIG_OK) {
         dig_store_close(made);
         if (created) {
@@ -225,23 +208,21 @@ enum dig_status dig_store_create(const char *const path, const struct dig_scene 
     return DIG_OK;
 }
 
-static enum dig_status seal(struct dig_store *const store, struct dig_error *const error)
+static void seal(struct dig_store *const store)
 {
     struct dig_db *const    db = &store->db;
     struct dig_store_report report;
-    if (dig_sql_open(store->path, SQLITE_OPEN_READWRITE, db, error) != DIG_OK) {
-        return db->status;
-    }
+    dig_sql_open(db, SQLITE_OPEN_READWRITE);
     dig_schema_check(db, &store->head);
-    if (db->status == DIG_OK) {
-        prepare_writing(db);
+    if (db->status != DIG_OK) {
+        return;
     }
+    prepare_writing(db);
     // What is damaged already must not be sealed so.
-    if (db->status == DIG_OK && dig_store_check(store, &report, error) == DIG_OK &&
+    if (db->status == DIG_OK && dig_store_check(store, &report, db->error) == DIG_OK &&
         store->head.version < DIG_TABLE_VERSION) {
         dig_schema_upgrade(db, store->head.version);
     }
-    return db->status;
 }
 
 enum dig_status dig_store_seal(const char *const path, bool *const was,
@@ -251,15 +232,14 @@ enum dig_status dig_store_seal(const char *const path, bool *const was,
     if (access(path, F_OK) != 0) {
         return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
     }
-    struct dig_store *store   = NULL;
-    bool              created = false;
-    enum dig_status   status  = make_store(path, &store, error);
-    if (status == DIG_OK) {
-        status = lock(store, &created, error);
+    struct dig_store *store  = NULL;
+    enum dig_status   status = make_store(path, &store, error);
+    if (status != DIG_OK) {
+        return status;
     }
-    if (status == DIG_OK) {
-        status = seal(store, error);
-    }
+    (void)lock(store);
+    seal(store);
+    status = store->db.status;
     if (status == DIG_OK) {
         *was = store->head.version >= DIG_TABLE_VERSION;
     }

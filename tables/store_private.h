@@ -23,10 +23,9 @@ struct dig_store {
 struct dig_db *dig_store_ask(struct dig_store *store, struct dig_error *error);
 
 /// Opens the file read-only, rolling back first what a crash left half written, begins a
-/// transaction and checks the file in it. Where it fails nothing stays open.
-DIG_MUST_CHECK enum dig_status dig_sql_open_read(const char *path, struct dig_db *db,
-                                                 struct dig_table_head *head,
-                                                 struct dig_error      *error);
+/// transaction and checks the file in it. Close its sql, also where that failed.
+struct dig_db dig_sql_open_read(const char *path, struct dig_table_head *head,
+                                struct dig_error *error);
 
 /// What was dug without an effect, from an open database, which should be in a transaction; there
 /// may be no entries. Where one has a single packing, its spread is pooled from all of them that
