@@ -23,19 +23,12 @@ struct dig_approach dig_approach_normalized(const struct dig_approach *const app
     return normalized;
 }
 
-int dig_approach_compare(const struct dig_approach *const a, const struct dig_approach *const b)
+bool dig_approach_is_same(const struct dig_approach *const a, const struct dig_approach *const b)
 {
     const struct dig_approach x = dig_approach_normalized(a);
     const struct dig_approach y = dig_approach_normalized(b);
-    if (x.depth < y.depth || x.depth > y.depth) {
-        return x.depth < y.depth ? -1 : 1;
-    }
-    return (x.attack_rad > y.attack_rad) - (x.attack_rad < y.attack_rad);
-}
-
-bool dig_approach_is_same(const struct dig_approach *const a, const struct dig_approach *const b)
-{
-    return dig_approach_compare(a, b) == 0;
+    return !(x.depth < y.depth || x.depth > y.depth || x.attack_rad < y.attack_rad ||
+             x.attack_rad > y.attack_rad);
 }
 
 bool dig_approach_is_plain(const struct dig_approach *const approach)

@@ -40,9 +40,6 @@ struct dig_approach dig_approach_normalized(const struct dig_approach *approach)
 bool dig_approach_is_plain(const struct dig_approach *approach);
 bool dig_approach_is_same(const struct dig_approach *a, const struct dig_approach *b);
 
-/// Before or behind in the order of tables: by depth, then by attack. As qsort() wants it.
-int dig_approach_compare(const struct dig_approach *a, const struct dig_approach *b);
-
 /// "depth 1.15, attack -5 deg" behind a ", ", or "" of the plain one.
 void dig_approach_text(const struct dig_approach *approach, char text[DIG_APPROACH_TEXT_SIZE]);
 

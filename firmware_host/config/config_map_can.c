@@ -11,62 +11,38 @@
 #include <stdio.h>
 #include <string.h>
 
-// A DBC unit: its quantity and its SI value.
+// A DBC unit, and the unit of SI that signals of its quantity have behind their names.
 struct unit {
-    const char *name;
-    char        kind; // p pressure, a angle, t temperature, l length, f force, m moment
-    double      scale;
+    const char *name, *si;
+    double      scale; // to that
 };
 
 // A scale farther off its unit is a slip, not a calibration.
 static const double most_calibration = 0.1;
 
 static const struct unit units[] = {
-    { "Pa", 'p', 1.0 },          { "kPa", 'p', 1e3 },
-    { "MPa", 'p', 1e6 },         { "bar", 'p', 1e5 },
-    { "psi", 'p', 6894.757293 }, { "rad", 'a', 1.0 },
-    { "mrad", 'a', 1e-3 },       { "deg", 'a', DIG_RAD_PER_DEG },
-    { "degC", 't', 1.0 },        { "m", 'l', 1.0 },
-    { "mm", 'l', 1e-3 },         { "N", 'f', 1.0 },
-    { "Nm", 'm', 1.0 },
+    { "Pa", "Pa", 1.0 },          { "kPa", "Pa", 1e3 },
+    { "MPa", "Pa", 1e6 },         { "bar", "Pa", 1e5 },
+    { "psi", "Pa", 6894.757293 }, { "rad", "rad", 1.0 },
+    { "mrad", "rad", 1e-3 },      { "deg", "rad", DIG_RAD_PER_DEG },
+    { "degC", "degC", 1.0 },      { "m", "m", 1.0 },
+    { "mm", "m", 1e-3 },          { "N", "N", 1.0 },
+    { "Nm", "Nm", 1.0 },
 };
-
-static char kind_of(const size_t signal)
-{
-    switch ((enum dig_signal)signal) {
-    case DIG_SIGNAL_BOOM_rad:
-    case DIG_SIGNAL_ARM_rad:
-    case DIG_SIGNAL_BUCKET_rad:
-    case DIG_SIGNAL_PITCH_rad: return 'a';
-    case DIG_SIGNAL_TEMPERATURE_degC: return 't';
-    case DIG_SIGNAL_PIN_X_m:
-    case DIG_SIGNAL_PIN_Z_m: return 'l';
-    case DIG_SIGNAL_SENSOR_FX_N:
-    case DIG_SIGNAL_SENSOR_FZ_N: return 'f';
-    case DIG_SIGNAL_SENSOR_MY_Nm: return 'm';
-    case DIG_SIGNAL_BOOM_HEAD_Pa:
-    case DIG_SIGNAL_BOOM_ROD_Pa:
-    case DIG_SIGNAL_ARM_HEAD_Pa:
-    case DIG_SIGNAL_ARM_ROD_Pa:
-    case DIG_SIGNAL_BUCKET_HEAD_Pa:
-    case DIG_SIGNAL_BUCKET_ROD_Pa:
-    case DIG_SIGNALS: break;
-    }
-    return 'p';
-}
 
 enum dig_status dig_config_map_check_unit(const struct dig_config_map_work *const work,
                                           const char *const at, const size_t signal,
                                           struct dig_map_entry *const entry, const bool scale_given)
 {
+    const char *const name = dig_signal_name((enum dig_signal)signal);
     for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
         const struct unit *const unit = &units[i];
         if (strcmp(unit->name, entry->can.unit) != 0) {
             continue;
         }
-        if (unit->kind != kind_of(signal)) {
+        if (strcmp(unit->si, strrchr(name, '_') + 1) != 0) {
             return REFUSE(work, "%s.signal: %s is in %s, expected a signal that can be %s", at,
-                          entry->can.name, unit->name, dig_signal_name((enum dig_signal)signal));
+                          entry->can.name, unit->name, name);
         }
         if (!scale_given) {
             entry->scale = unit->scale;
