@@ -65,13 +65,6 @@ static enum dig_status make_store(const char *const path, struct dig_store **con
     return DIG_OK;
 }
 
-struct dig_db *dig_store_ask(struct dig_store *const store, struct dig_error *const error)
-{
-    store->db.status = DIG_OK;
-    store->db.error  = error;
-    return &store->db;
-}
-
 enum dig_status dig_store_open(const char *const path, struct dig_store **const store,
                                struct dig_error *const error)
 {

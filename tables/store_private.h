@@ -20,7 +20,13 @@ struct dig_store {
 };
 
 /// What is asked of the store next may fail anew, and says so in *error. Returns its database.
-struct dig_db *dig_store_ask(struct dig_store *store, struct dig_error *error);
+static inline struct dig_db *dig_store_ask(struct dig_store *const store,
+                                           struct dig_error *const error)
+{
+    store->db.status = DIG_OK;
+    store->db.error  = error;
+    return &store->db;
+}
 
 /// Opens the file read-only, rolling back first what a crash left half written, begins a
 /// transaction and checks the file in it. Close its sql, also where that failed.
