@@ -1,5 +1,6 @@
 #include "files/recording_csv.h"
 
+#include "files/lcm/lcm_log.h"
 #include "files/text/csv.h"
 #include "files/text/whole.h"
 
@@ -163,7 +164,9 @@ enum dig_status dig_machine_recording_read(const char *const                   p
                                            struct dig_error *const             error)
 {
     assert(path != NULL && recording != NULL);
-
+    if (dig_lcm_log_is(path)) {
+        return dig_lcm_log_read(path, recording, error);
+    }
     const bool senses = dig_csv_has(path, dig_signal_name(DIG_SIGNAL_SENSOR_MY_Nm));
     const struct machine_columns of =
         machine_columns(senses ? DIG_SENSING_SENSOR : DIG_SENSING_CYLINDERS);

@@ -15,8 +15,8 @@
 /// temperature may be missing; NaN in a force row), text where a
 /// number belongs, NaN or infinity, time that does not ascend, sampling below 50 Hz, fewer than two
 /// rows. A machine recording with a column sensor_My_Nm is of a rig with a force sensor, which has
-/// no boom, arm and cylinders (core/machine.h). DIG_EIO: errno's text. *recording is written on
-/// success only.
+/// no boom, arm and cylinders (core/machine.h); an LCM log of the daemon is one, too
+/// (files/lcm/lcm_log.h). DIG_EIO: errno's text. *recording is written on success only.
 DIG_MUST_CHECK enum dig_status dig_recording_read(const char *path, struct dig_recording *recording,
                                                   struct dig_error *error);
 DIG_MUST_CHECK enum dig_status dig_machine_recording_read(const char                   *path,

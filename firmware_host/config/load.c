@@ -1,7 +1,6 @@
 #include "firmware_host/config/load.h"
 
 #include "core/similar.h"
-#include "files/lcm/lcm_log.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 #include "files/yaml/yaml.h"
@@ -63,10 +62,8 @@ static enum dig_status load_map(const char *const path, struct dig_loaded *const
 static enum dig_status load_recording(const char *const path, struct dig_loaded *const l,
                                       struct dig_error *const error)
 {
-    const char *const     file   = l->config.replay.text;
-    const enum dig_status status = dig_lcm_log_is(file)
-                                       ? dig_lcm_log_read(file, &l->recording, error)
-                                       : dig_machine_recording_read(file, &l->recording, error);
+    const enum dig_status status =
+        dig_machine_recording_read(l->config.replay.text, &l->recording, error);
     return dig_yaml_tell_namer(path, "input.replay.file", status, error);
 }
 

@@ -3,9 +3,9 @@
 #include "closed_loop/check/machine_check.h"
 #include "closed_loop/report/machine_check_report.h"
 #include "files/machine_yaml.h"
+#include "files/recording_csv.h"
 #include "files/text/whole.h"
 #include "tools/digloop/commands.h"
-#include "tools/digloop/recording.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -39,7 +39,7 @@ enum dig_status digloop_check(const struct digloop_options *const options, bool 
     struct dig_machine_air_check check     = { .items = 0 };
     enum dig_status              status    = dig_machine_read(options->table, &machine, error);
     if (status == DIG_OK) {
-        status = digloop_read_samples(options->recording[0], &recording, error);
+        status = dig_machine_recording_read(options->recording[0], &recording, error);
     }
     if (status == DIG_OK) {
         status =

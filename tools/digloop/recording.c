@@ -54,15 +54,6 @@ static enum dig_status check_range(const struct dig_machine *const           mac
                : DIG_OK;
 }
 
-enum dig_status digloop_read_samples(const char *const                   path,
-                                     struct dig_machine_recording *const recording,
-                                     struct dig_error *const             error)
-{
-    assert(path != NULL && recording != NULL);
-    return dig_lcm_log_is(path) ? dig_lcm_log_read(path, recording, error)
-                                : dig_machine_recording_read(path, recording, error);
-}
-
 enum dig_status digloop_read_machine(const char *const                   path,
                                      const struct dig_machine *const     machine,
                                      struct dig_machine_recording *const recording,
@@ -70,7 +61,7 @@ enum dig_status digloop_read_machine(const char *const                   path,
 {
     assert(path != NULL && machine != NULL && recording != NULL);
     struct dig_machine_recording read   = { .rows = 0 };
-    enum dig_status              status = digloop_read_samples(path, &read, error);
+    enum dig_status              status = dig_machine_recording_read(path, &read, error);
     if (status == DIG_OK) {
         status = check_kind(machine, &read, path, error);
     }

@@ -24,14 +24,9 @@ struct digloop_machine {
     struct dig_corrected_machine corrected;
 };
 
-/// A machine recording or an LCM log of the daemon, as it is.
-DIG_MUST_CHECK enum dig_status digloop_read_samples(const char                   *path,
-                                                    struct dig_machine_recording *recording,
-                                                    struct dig_error             *error);
-
-/// The same for what goes by the machine's forces. Refuses readings of another kind than the
-/// machine has, and pressures that were cut off: what is
-/// missing there would be taken for the soil's.
+/// A machine recording of whatever wrote it, for what goes by the machine's forces. Refuses
+/// readings of another kind than the machine has, and pressures that were cut off: what is missing
+/// there would be taken for the soil's.
 DIG_MUST_CHECK enum dig_status digloop_read_machine(const char                   *path,
                                                     const struct dig_machine     *machine,
                                                     struct dig_machine_recording *recording,
