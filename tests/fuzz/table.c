@@ -124,8 +124,10 @@ static void patch_cells_and_seal(const char *const path, const uint8_t *data, si
                 patch_cell(db, &p);
             }
         }
-        if (sealed && dig_seal_write_all(&(const struct dig_db){ db, path }, &error) != DIG_OK) {
-            expect_word(DIG_EINVAL, &error);
+        if (sealed) {
+            struct dig_db sealing = { .sql = db, .path = path, .error = &error };
+            dig_seal_write_all(&sealing);
+            expect_word(sealing.status, &error);
         }
         (void)sqlite3_exec(db, "COMMIT", NULL, NULL, NULL);
     }
