@@ -51,7 +51,7 @@ offline_dem/device     engine_cuda | device_carry device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
 closed_loop/numeric    | dense levenberg vectors
-closed_loop/recordings measured observe | features lateness reading_noise regressors path_depth
+closed_loop/recordings measured observe | features lateness reading_noise regressors path_depth steady_path
 closed_loop/machine_digs observe_machine saturation | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs

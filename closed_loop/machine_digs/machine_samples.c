@@ -2,7 +2,10 @@
 // the pressures of the bucket's drive and of every other drive that half of the samples have.
 
 #include "closed_loop/machine_digs/machine_dig.h"
+#include "closed_loop/machine_digs/pose_jump.h"
+#include "closed_loop/recordings/steady_path.h"
 #include "core/sample.h"
+#include "core/units.h"
 #include "estimator/wrench/cylinder.h"
 
 #include <assert.h>
@@ -16,6 +19,13 @@ static const double rates_half_s = 0.12;
 
 // Of the samples that tell the moment: a drive that fewer tell as well is left out.
 static const double told_share = 0.5;
+
+// Of the bucket's length: a step of an angle that takes the tooth no farther is as good as none.
+static const double shown_share = 0.01;
+
+// Vertices of the path that is smoothed lie as far apart as those that a dig is found by, in those
+// of an alignment.
+static const double apart = 2.5;
 
 static bool is_read(const struct dig_sample *const sample, const size_t signal)
 {
@@ -81,6 +91,78 @@ static size_t copy_complete(const struct dig_machine_recording *const recording,
     return n;
 }
 
+static void take(const struct dig_machine_dig *const dig, const size_t signal, double value[])
+{
+    for (size_t i = 0; i < dig->samples; i++) {
+        value[i] = dig->sample[i].value[signal];
+    }
+}
+
+static void put(const struct dig_machine_dig *const dig, const size_t signal, const double value[])
+{
+    for (size_t i = 0; i < dig->samples; i++) {
+        dig->sample[i].value[signal] = value[i];
+    }
+}
+
+// Where an angle arrives in steps that the path shows, its joint went from one to the next: else
+// one that turns steadily stands, and then turns faster than any.
+static void undo_steps(const struct dig_machine *const     machine,
+                       const struct dig_machine_dig *const dig, double number[])
+{
+    double reach_m = 0.0;
+    for (size_t j = DIG_JOINTS; j-- > 0;) {
+        reach_m += machine->link[j].length_m;
+        take(dig, DIG_SIGNAL_BOOM_rad + j, number);
+        dig_steady_readings(
+            dig->samples, shown_share * machine->link[DIG_JOINT_BUCKET].length_m / reach_m, number);
+        put(dig, DIG_SIGNAL_BOOM_rad + j, number);
+    }
+}
+
+// Noise of the angles is smoothed as far as that of the path that they make has to be.
+static void smooth(const struct dig_machine *const machine, const struct dig_machine_dig *const dig,
+                   struct dig_force_row row[], double number[])
+{
+    struct dig_recording path = { dig->samples, row };
+    for (size_t i = 0; i < dig->samples; i++) {
+        const struct dig_front front =
+            dig_front_place(machine, &dig->sample[i].value[DIG_SIGNAL_BOOM_rad]);
+        row[i].pin_x_m   = front.pin_m[DIG_JOINT_BUCKET].x;
+        row[i].pin_z_m   = front.pin_m[DIG_JOINT_BUCKET].y;
+        row[i].theta_deg = front.attitude_rad[DIG_JOINT_BUCKET] / DIG_RAD_PER_DEG / apart;
+    }
+    const size_t far = dig_steady_smooth(&path, apart * machine->link[DIG_JOINT_BUCKET].length_m,
+                                         row + dig->samples, number);
+    for (size_t s = DIG_SIGNAL_BOOM_rad; s <= DIG_SIGNAL_BUCKET_rad; s++) {
+        take(dig, s, number);
+        dig_steady_average(dig->samples, far, number, number + dig->samples);
+        put(dig, s, number);
+    }
+}
+
+// The angles as the joints turned, where their sensors read them in steps or with noise. Across a
+// jump nothing turned.
+static enum dig_status steady(const struct dig_machine *const machine,
+                              struct dig_machine_dig *const   dig)
+{
+    struct dig_pose_jump jump;
+    if (dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
+        return DIG_OK;
+    }
+    const size_t                n      = dig->samples;
+    struct dig_force_row *const row    = calloc(2 * n, sizeof *row);
+    double *const               number = malloc((2 * n + 1) * sizeof *number);
+    if (row != NULL && number != NULL) {
+        undo_steps(machine, dig, number);
+        smooth(machine, dig, row, number);
+    }
+    const enum dig_status status = row != NULL && number != NULL ? DIG_OK : DIG_ENOMEM;
+    free(row);
+    free(number);
+    return status;
+}
+
 void dig_machine_dig_finish(struct dig_machine_dig *const dig)
 {
     if (dig != NULL) {
@@ -116,6 +198,11 @@ enum dig_status dig_machine_dig_make_air(const struct dig_machine *const        
                                "%zu samples with all angles and the bucket cylinder's pressures, "
                                "expected %d at least",
                                made.samples, LEAST_SAMPLES);
+        goto done;
+    }
+    status = steady(machine, &made);
+    if (status != DIG_OK) {
+        (void)dig_error_set(error, status, "%zu samples", made.samples);
         goto done;
     }
     for (size_t i = 0; i < made.samples; i++) {

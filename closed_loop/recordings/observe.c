@@ -267,7 +267,7 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
                              recording->rows);
     }
     const size_t                n      = recording->rows + 2;
-    double *const               memory = calloc(6 * n, sizeof *memory);
+    double *const               memory = calloc(7 * n, sizeof *memory);
     struct dig_force_row *const row    = calloc(2 * n, sizeof *row);
     if (memory == NULL || row == NULL) {
         free(memory);

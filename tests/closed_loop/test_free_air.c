@@ -23,6 +23,26 @@ TEST(quiet_sensors_of_a_machine_that_stands_raise_no_alarm_and_hide_no_seal)
     machine = as_filed;
 }
 
+// Steps of the angles, and noise of which a load is as full: closed_loop/recordings/steady_path.c.
+TEST(coarse_angles_raise_no_alarm_and_hide_no_seal)
+{
+    static const double      rough_deg[][2] = { { 0.0, 0.35 }, { 0.15, 0.0 }, { 0.15, 0.5 } };
+    const struct dig_machine as_filed       = machine;
+    for (size_t k = 0; k < sizeof rough_deg / sizeof rough_deg[0]; k++) {
+        static const struct fault none = { .dry_N = 0.0 };
+        static const struct fault seal = { .dry_N = 4000.0 };
+        machine.angle_sigma_rad        = rough_deg[k][0] * DIG_RAD_PER_DEG;
+        machine.angle_step_rad         = rough_deg[k][1] * DIG_RAD_PER_DEG;
+        struct campaign *c             = trace(&none, 95 + k);
+        assert_nothing_found(c);
+        end(c);
+        c = trace(&seal, 98 + k);
+        expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+        end(c);
+    }
+    machine = as_filed;
+}
+
 // No recording tells of it; what it pulls is left out, whatever else there is.
 TEST(a_machine_that_slews_raises_no_alarm_and_hides_no_seal)
 {

@@ -102,4 +102,44 @@ TEST(a_recording_without_its_dig_is_refused_by_name)
     free(m);
 }
 
+// Where the dig is, its pace and its curves are those of fine angles.
+TEST(steps_and_noise_of_the_angles_move_no_dig)
+{
+    static const double rough_deg[][2] = {
+        { 0.0, 0.2 }, { 0.0, 0.35 }, { 0.0, 0.5 }, { 0.15, 0.0 }, { 0.15, 0.5 }
+    };
+    static const struct fault  none   = { .dry_N = 0.0 };
+    struct dig_measured *const fine   = calloc(2, sizeof *fine);
+    struct dig_measured *const coarse = &fine[1];
+    for (int kind = 0; kind < KINDS; kind++) {
+        const int t = kind == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+        for (size_t k = 0; k <= sizeof rough_deg / sizeof rough_deg[0]; k++) {
+            const struct dig_machine as_filed = machine;
+            if (k > 0) {
+                machine.angle_sigma_rad = rough_deg[k - 1][0] * DIG_RAD_PER_DEG;
+                machine.angle_step_rad  = rough_deg[k - 1][1] * DIG_RAD_PER_DEG;
+            }
+            struct dig_machine_recording r     = record(kind, 0, &none, 40 + k);
+            struct dig_machine_side     *side  = NULL;
+            struct dig_error             error = { "" };
+            struct dig_measured *const   m     = k == 0 ? fine : coarse;
+            m->trajectory                      = t;
+            assert_ok(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), error);
+            print_message("%.3f to %.3f, pace %.3f\n", m->first, m->last, m->pace);
+            assert_close(m->pace, fine->pace, 0.03 * fine->pace);
+            double off = 0.0, square = 0.0;
+            for (size_t i = 5; i + 5 < DIG_CURVE_POINTS; i++) {
+                off += pow(m->value[DIG_CHANNEL_MY_Nm][i] - fine->value[DIG_CHANNEL_MY_Nm][i], 2.0);
+                square += pow(fine->value[DIG_CHANNEL_MY_Nm][i], 2.0);
+            }
+            print_message("   moment off by %.4f\n", sqrt(off / square));
+            assert_true(sqrt(off / square) < 0.05);
+            dig_machine_side_destroy(side);
+            dig_machine_recording_finish(&r);
+            machine = as_filed;
+        }
+    }
+    free(fine);
+}
+
 TESTS_WITH(build, tear_down)

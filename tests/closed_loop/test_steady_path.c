@@ -16,7 +16,7 @@
 enum { ROWS_MAX = 4100 };
 
 static struct dig_force_row room[ROWS_MAX];
-static double               number[ROWS_MAX + 1];
+static double               number[2 * ROWS_MAX + 1];
 static double               clean_way[ROWS_MAX];
 static double               way[ROWS_MAX];
 
