@@ -103,20 +103,27 @@ static struct dig_window_sample sample_of(const struct dig_machine_dig *const di
 {
     const struct dig_wrench *const w = &r->wrench;
 
-    const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, w->Fx_N, w->Fz_N };
-    const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm, w->sigma_Fx_N, w->sigma_Fz_N };
+    // x runs against X.
+    const double c = cos(dig->frame_rad);
+    const double s = sin(dig->frame_rad);
+
+    const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, c * w->Fx_N + s * w->Fz_N,
+                                                c * w->Fz_N - s * w->Fx_N };
+    const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm,
+                                                hypot(c * w->sigma_Fx_N, s * w->sigma_Fz_N),
+                                                hypot(c * w->sigma_Fz_N, s * w->sigma_Fx_N) };
 
     struct dig_window_sample sample = { .time_s     = dig->time_s[at] / sqrt(dig->lambda),
                                         .pose       = r->pose,
                                         .has_forces = w->force_valid };
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
-        const double scale = pow(dig->lambda, c == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
+    for (size_t k = 0; k < DIG_FORCE_CHANNELS; k++) {
+        const double scale = pow(dig->lambda, k == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0);
         // What does not average down is a share of the whole, told for the moment only.
         const double slow =
-            w->sigma_My_Nm > 0.0 ? sigmas[c] * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
-        sample.value[c] = value[c] / scale;
-        sample.sigma[c] = (float)(sigmas[c] / scale);
-        sample.slow[c]  = (float)(slow / scale);
+            w->sigma_My_Nm > 0.0 ? sigmas[k] * w->slow_sigma_My_Nm / w->sigma_My_Nm : 0.0;
+        sample.value[k] = value[k] / scale;
+        sample.sigma[k] = (float)(sigmas[k] / scale);
+        sample.slow[k]  = (float)(slow / scale);
     }
     return sample;
 }

@@ -31,9 +31,9 @@ struct dig_path_point dig_machine_dig_point(const struct dig_curve_set *const   
                                             const struct dig_machine_dig *const dig,
                                             const struct dig_front *const       front)
 {
-    const struct dig_vec2 *const pin = &front->pin_m[DIG_JOINT_BUCKET];
-    return dig_recorded_dig_point(set, dig->lambda, pin->x, pin->y,
-                                  front->attitude_rad[DIG_JOINT_BUCKET]);
+    const struct dig_vec2 pin = dig_vec2_turned(front->pin_m[DIG_JOINT_BUCKET], dig->frame_rad);
+    return dig_recorded_dig_point(set, dig->lambda, pin.x, pin.y,
+                                  front->attitude_rad[DIG_JOINT_BUCKET] + dig->frame_rad);
 }
 
 static struct dig_path_point point_of(const struct dig_machine *const     machine,
@@ -217,13 +217,49 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
     dig_free_air_find(v, found->start, found->end, set->tooth_m, dig);
 }
 
+// How the machine stands, in the mean; 0 where it does not say.
+static double pitch_of(const struct dig_machine_dig *const dig)
+{
+    double sum   = 0.0;
+    double count = 0.0;
+    for (size_t i = 0; i < dig->samples; i++) {
+        sum += dig->sample[i].valid[DIG_SIGNAL_PITCH_rad]
+                   ? dig->sample[i].value[DIG_SIGNAL_PITCH_rad]
+                   : 0.0;
+        count += dig->sample[i].valid[DIG_SIGNAL_PITCH_rad] ? 1.0 : 0.0;
+    }
+    return count > 0.0 ? sum / count : 0.0;
+}
+
+// Finds the dig in the machine's frame and in the world's, and leaves the frame and vertices in
+// which it lies nearer its trajectory.
+static struct found find(const struct dig_machine *const   machine,
+                         const struct dig_curve_set *const set, const int asked,
+                         struct dig_vertices *const v, struct dig_machine_dig *const dig)
+{
+    dig->frame_rad = 0.0;
+    lay_out(machine, set, dig, v);
+    const struct found own = search(set, v, asked);
+    dig->frame_rad         = pitch_of(dig);
+    if (!(fabs(dig->frame_rad) > 0.0)) {
+        return own;
+    }
+    lay_out(machine, set, dig, v);
+    const struct found world = search(set, v, asked);
+    if (world.off_m < own.off_m) {
+        return world;
+    }
+    dig->frame_rad = 0.0;
+    lay_out(machine, set, dig, v);
+    return own;
+}
+
 static enum dig_status place(const struct dig_machine *const   machine,
                              const struct dig_curve_set *const set, const int asked,
                              struct dig_vertices *const v, struct dig_machine_dig *const dig,
                              struct dig_error *const error)
 {
-    lay_out(machine, set, dig, v);
-    const struct found found   = search(set, v, asked);
+    const struct found found   = find(machine, set, asked, v, dig);
     const double       limit_m = limit_share * set->tooth_m;
     const char *const  along =
         asked < 0 ? "any trajectory of the table" : set->trajectory[asked].name;

@@ -6,6 +6,9 @@
 //   before ....... before_end  contact ..... end          after ....... after_end
 //
 // Where the tooth is below the ground before or after, as in another dig, there is no air.
+//
+// A machine that says how it is pitched digs level ground, or ground that is pitched as it is: its
+// path tells, in the world's frame or in the machine's. Forces are those of the same frame.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_MACHINE_DIG_H
 #define DIG_CLOSED_LOOP_MACHINE_DIGS_MACHINE_DIG_H
@@ -30,7 +33,8 @@ struct dig_machine_dig {
     struct dig_rates  *rates;  // centred
     int                trajectory;
     double             lambda;
-    struct dig_track   track;               // where the route lies, rig scale
+    double             frame_rad; // by which path and forces are turned out of the machine's frame
+    struct dig_track   track;     // where the route lies, rig scale
     size_t             before;              // first sample of the air before
     size_t             before_end, contact; // first samples not in the air before, in the soil
     size_t             end;                 // first sample past the trajectory
@@ -74,7 +78,7 @@ struct dig_between dig_machine_dig_between(const struct dig_machine_dig *dig, do
                                            size_t near);
 struct dig_rates   dig_machine_dig_rates(const struct dig_machine_dig *dig, struct dig_between at);
 
-/// The bucket of the machine standing so, in rig scale.
+/// The bucket of the machine standing so, in rig scale and the dig's frame.
 struct dig_path_point dig_machine_dig_point(const struct dig_curve_set   *set,
                                             const struct dig_machine_dig *dig,
                                             const struct dig_front       *front);

@@ -142,4 +142,72 @@ TEST(steps_and_noise_of_the_angles_move_no_dig)
     free(fine);
 }
 
+// Nose up by so much, all that hangs on the boom's pin as before: the boom is folded by as much,
+// and its drive, at another lever, pushes as much about the pin.
+static void stand_pitched(const double pitch_rad, struct dig_machine_recording *const r)
+{
+    for (size_t i = 0; i < r->rows; i++) {
+        double *const value = r->row[i].value;
+        double        was_m, is_m;
+        assert_int_equal(
+            dig_rig_lever_m(&machine, DIG_JOINT_BOOM, value[DIG_SIGNAL_BOOM_rad], &was_m), DIG_OK);
+        value[DIG_SIGNAL_BOOM_rad] -= pitch_rad;
+        assert_int_equal(
+            dig_rig_lever_m(&machine, DIG_JOINT_BOOM, value[DIG_SIGNAL_BOOM_rad], &is_m), DIG_OK);
+        value[DIG_SIGNAL_BOOM_HEAD_Pa] *= was_m / is_m;
+        value[DIG_SIGNAL_BOOM_ROD_Pa] *= was_m / is_m;
+        value[DIG_SIGNAL_PITCH_rad]           = pitch_rad;
+        r->row[i].valid[DIG_SIGNAL_PITCH_rad] = true;
+    }
+}
+
+TEST(a_pitched_machine_digs_level_ground_as_a_level_one_does)
+{
+    static const struct fault  none        = { .dry_N = 0.0 };
+    static const double        pitch_deg[] = { 0.0, 3.0, -3.0 };
+    struct dig_measured *const level       = calloc(2, sizeof *level);
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (size_t k = 0; k < 3; k++) {
+            struct dig_machine_recording r     = record(kind, 0, &none, 1);
+            struct dig_measured *const   m     = k == 0 ? level : &level[1];
+            struct dig_machine_side     *side  = NULL;
+            struct dig_error             error = { "" };
+            m->trajectory                      = kind == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
+            stand_pitched(pitch_deg[k] * DIG_RAD_PER_DEG, &r);
+            assert_ok(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), error);
+            for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+                double off = 0.0, square = 0.0;
+                for (size_t i = 0; i < DIG_CURVE_POINTS; i++) {
+                    off += pow(m->value[c][i] - level->value[c][i], 2.0);
+                    square += pow(level->value[c][i], 2.0);
+                }
+                print_message("%g deg: %zu off by %.4f\n", pitch_deg[k], c, sqrt(off / square));
+                assert_true(sqrt(off / square) < 0.02);
+            }
+            dig_machine_side_destroy(side);
+            dig_machine_recording_finish(&r);
+        }
+    }
+    free(level);
+}
+
+// Then the path lies along its trajectory in the machine's frame.
+TEST(a_machine_pitched_as_its_ground_digs_along_its_own_frame)
+{
+    static const struct fault    none  = { .dry_N = 0.0 };
+    struct dig_machine_recording r     = record(1, 0, &none, 1);
+    struct dig_error             error = { "" };
+    for (int way = -1; way <= 1; way += 2) {
+        struct dig_machine_dig dig;
+        for (size_t i = 0; i < r.rows; i++) {
+            r.row[i].value[DIG_SIGNAL_PITCH_rad] = 3.0 * DIG_RAD_PER_DEG * way;
+            r.row[i].valid[DIG_SIGNAL_PITCH_rad] = true;
+        }
+        assert_ok(dig_machine_dig_make(&machine, set, &r, MADE_ACTUAL, &dig, &error), error);
+        assert_close(dig.frame_rad, 0.0, 0.0);
+        dig_machine_dig_finish(&dig);
+    }
+    dig_machine_recording_finish(&r);
+}
+
 TESTS_WITH(build, tear_down)
