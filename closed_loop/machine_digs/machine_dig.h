@@ -35,7 +35,7 @@ struct dig_machine_dig {
     double             lambda;
     double             frame_rad; // by which path and forces are turned out of the machine's frame
     struct dig_track   track;     // where the route lies, rig scale
-    size_t             before;              // first sample of the air before
+    size_t             before;    // first sample of the air before
     size_t             before_end, contact; // first samples not in the air before, in the soil
     size_t             end;                 // first sample past the trajectory
     double             pace;      // duration of the table's trajectory / of this dig, at rig scale

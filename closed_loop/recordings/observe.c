@@ -1,6 +1,7 @@
 #include "closed_loop/recordings/observe.h"
 
 #include "closed_loop/recordings/alignment.h"
+#include "closed_loop/recordings/force_units.h"
 #include "closed_loop/recordings/lateness.h"
 #include "closed_loop/recordings/path_depth.h"
 #include "closed_loop/recordings/path_match.h"
@@ -250,6 +251,10 @@ static enum dig_status observe(const struct dig_curve_set *const set,
             "My_Nm is missing for longer than %.2f s at the table's pace, expected "
             "the moment of the whole dig",
             half_s);
+    }
+    const enum dig_status sized = dig_force_units_check(set, &o, error);
+    if (sized != DIG_OK) {
+        return sized;
     }
     dig_lateness_rate(&dug, set->tooth_m, &o, o.rate);
     *observed = o;

@@ -460,3 +460,29 @@ TEST(what_lies_beyond_the_trajectory_is_left_out)
     dig_recording_finish(&r);
     dig_recording_finish(&l);
 }
+
+// closed_loop/recordings/force_units.c
+TEST(a_moment_in_kilonewton_metres_is_refused)
+{
+    struct dig_curve_set    set    = two_digs();
+    int                     dug[2] = { 1, 0 };
+    struct dig_curve *const curve  = calloc(2, sizeof *curve);
+    struct dig_measured     m      = { .trajectory = 0 };
+    struct dig_error        error  = { "" };
+    struct dig_recording    r      = drive(&set.trajectory[0], 1.0, slow_wave);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        curve[0].mean[DIG_CHANNEL_MY_Nm][k] = 2.0F;
+    }
+    set.entries  = 1;
+    set.packings = dug;
+    set.curve    = curve;
+    assert_ok(dig_observe_dig(&set, &r, &m, &error), error);
+    for (size_t i = 0; i < r.rows; i++) {
+        r.row[i].My_Nm *= 1e-3;
+    }
+    assert_int_equal(dig_observe_dig(&set, &r, &m, &error), DIG_EINVAL);
+    assert_contains(error.text, "My_Nm");
+    assert_contains(error.text, "not kN m");
+    free(curve);
+    dig_recording_finish(&r);
+}
