@@ -74,6 +74,7 @@ struct fault {
     double hunting_s;
     double lost;        // readings do not arrive whose luck is worse than so many sigmas; 0: all do
     size_t stands;      // so many samples more, as the first, before the machine moves
+    double stands_kg;   // something carries so much of the bucket there
     size_t rests;       // so many samples more where it is about to go in: the ground
     double ground_kg;   // carries so much of the bucket there
     double slews_radps; // at most, from the first of those to the last
@@ -273,7 +274,9 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
         for (int j = 0; j < DIG_JOINTS; j++) {
             push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
             const double time_s    = t->step_s * (double)then + 40.0 * (double)order;
-            const double ground_kg = rests ? fault->ground_kg : 0.0;
+            const double ground_kg = rests               ? fault->ground_kg
+                                     : i < fault->stands ? fault->stands_kg
+                                                         : 0.0;
             push_more(&row, j,
                       weight_N(t, then, j, DIG_JOINT_BUCKET, carried_kg(fault, order) - ground_kg));
             for (int link = j; link < DIG_JOINTS; link++) {

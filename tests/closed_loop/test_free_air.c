@@ -82,6 +82,22 @@ TEST(a_bucket_that_rests_on_the_ground_raises_no_alarm_and_hides_no_seal)
     end(c);
 }
 
+// Or on a heap, higher than the ground it digs: closed_loop/machine/machine_slew.c.
+TEST(a_bucket_that_rests_high_up_raises_no_alarm_and_hides_no_seal)
+{
+    for (uint64_t seed = 171; seed <= most(170, 172); seed++) {
+        const struct fault     rests = { .stands = 700, .stands_kg = seed == 171 ? 900.0 : 250.0 };
+        struct campaign *const c     = trace(&rests, seed);
+        assert_nothing_found(c);
+        assert_close(c->finding.residual_air, 0.95, 0.15);
+        end(c);
+    }
+    const struct fault     both = { .stands = 700, .stands_kg = 400.0, .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&both, 173);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
