@@ -214,11 +214,9 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
         .point   = malloc(points * sizeof *made.point),
         .row     = malloc(DIG_JOINTS * points * sizeof *made.row),
         .segment = malloc((2 * digs + 1) * sizeof *made.segment),
-        .scratch = malloc((size_t)(2 * DIG_JOINTS) * points * sizeof *made.scratch),
-        .pose    = calloc(points, sizeof *made.pose),
+        .balance = malloc(points * sizeof *made.balance),
     };
-    if (made.point == NULL || made.row == NULL || made.segment == NULL || made.scratch == NULL ||
-        made.pose == NULL) {
+    if (made.point == NULL || made.row == NULL || made.segment == NULL || made.balance == NULL) {
         dig_air_finish(&made);
         return DIG_ENOMEM;
     }
@@ -251,8 +249,7 @@ void dig_air_finish(struct dig_air *const air)
         free(air->point);
         free(air->row);
         free(air->segment);
-        free(air->scratch);
-        free(air->pose);
+        free(air->balance);
         *air = (struct dig_air){ .points = 0 };
     }
 }

@@ -12,6 +12,7 @@
 #include "core/machine.h"
 #include "core/sample.h"
 #include "core/units.h"
+#include "estimator/wrench/balance.h"
 #include "estimator/wrench/correction.h"
 #include "estimator/wrench/rates.h"
 
@@ -61,16 +62,21 @@ struct dig_air_segment {
     size_t first_row, rows;
     double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
 
-    // With which the poses of its points were last computed.
-    struct dig_correction posed;
+    // How its points were last asked about: their balances are kept.
+    struct dig_correction asked;
+    bool                  known, calm, held;
 };
 
-/// The part of a point's balance that does not depend on pressures and friction.
-struct dig_air_pose {
-    bool   known;
-    bool   lever_ok[DIG_JOINTS];
-    double arm_m[DIG_JOINTS];
-    double mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
+/// A point's balance as last worked out; a column of the equations changes a part of it.
+struct dig_air_balance {
+    struct dig_rates    rates;
+    struct dig_readings readings;
+    bool                read;
+    bool                lever_ok[DIG_JOINTS];
+    double              arm_m[DIG_JOINTS];
+    double              mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
+    double              rest_N[DIG_JOINTS], taken_N[DIG_JOINTS]; // without friction, by friction
+    double              left_N[DIG_JOINTS];                      // by both
 };
 
 /// Free with dig_air_finish().
@@ -80,8 +86,7 @@ struct dig_air {
     struct dig_air_point   *point;
     struct dig_air_row     *row;
     struct dig_air_segment *segment;
-    double                 *scratch; // [6 * points]
-    struct dig_air_pose    *pose;    // [points]
+    struct dig_air_balance *balance; // [points]
 };
 
 /// Takes the air of the digs for which used[] is true (NULL: of all). Samples with a pressure at
@@ -104,7 +109,8 @@ void dig_air_forces(const struct dig_air *air, const struct dig_correction corre
                     double drive_N[], double load_N[]);
 
 /// Residual of every row of the corrected machine, in its sigmas: rest[rows], correction[segments].
-/// calm: with the calm pressures, as slopes are taken. Uses air's scratch.
+/// calm: with the calm pressures, as slopes are taken. Asked again with a correction that differs in
+/// a part, it costs that part. Uses air's scratch.
 void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[], bool calm,
                   double rest[]);
 

@@ -51,75 +51,108 @@ static double held_N(const struct dig_friction *const friction, const double pus
     return fabs(dig_friction_loss_N(friction, push_N, copysign(moves_mps, rod_mps)) - loss_N);
 }
 
-// Levers and masses; half of all that is asked differs in pressures or friction alone.
-static const struct dig_air_pose *pose_of(const struct dig_machine *const  corrected,
-                                          const struct dig_readings *const readings,
-                                          const struct dig_rates *const    rates,
-                                          struct dig_air_pose *const       pose)
+// What of a balance has to be worked out anew.
+struct stale {
+    bool readings, masses;
+    bool lever[DIG_JOINTS], joint[DIG_JOINTS]; // a joint's lever; any of what is left of it
+};
+
+// True when numbers of two corrections differ: they are structs of doubles.
+static bool differ(const void *const a, const void *const b, const size_t bytes)
 {
-    if (pose->known) {
-        return pose;
+    const double *const one   = a;
+    const double *const other = b;
+    bool                same  = true;
+    for (size_t i = 0; i < bytes / sizeof(double); i++) {
+        same = same && fabs(one[i] - other[i]) <= 0.0;
     }
-    const struct dig_front front = dig_front_place(corrected, readings->joint_rad);
-    dig_dynamics_Nm(corrected, &front, rates, readings->pitch_rad, pose->mass_Nm);
+    return !same;
+}
+
+static const struct stale all = { true, true, { true, true, true }, { true, true, true } };
+
+#define DIFFER(member) differ(&a->member, &b->member, sizeof a->member)
+
+static struct stale stale_between(const struct dig_correction *const a,
+                                  const struct dig_correction *const b, const bool other_way)
+{
+    struct stale stale  = { .readings = other_way };
+    const bool   late   = DIFFER(delay_s);
+    const bool   loads  = DIFFER(link) || DIFFER(payload);
+    const bool   angles = DIFFER(angle_rad) || DIFFER(level_rad) || late;
+    const bool   bars = DIFFER(rocker_m) || DIFFER(link_m) || DIFFER(rocker_pin_m) || DIFFER(ear_m);
+    stale.masses      = loads || angles;
     for (int j = 0; j < DIG_JOINTS; j++) {
-        struct dig_lever lever;
-        pose->lever_ok[j] =
-            dig_lever_solve(corrected, (enum dig_joint)j, readings->joint_rad[j], &lever) == DIG_OK;
-        pose->arm_m[j] = pose->lever_ok[j] ? lever.arm_m : 0.0;
+        const bool pushes = DIFFER(offset_Pa[j]) || DIFFER(gain[j]);
+        stale.readings    = stale.readings || pushes || angles;
+        stale.lever[j]    = DIFFER(base_m[j]) || DIFFER(eye_m[j]) || DIFFER(angle_rad[j]) || late ||
+                         (j == DIG_JOINT_BUCKET && bars);
+        stale.joint[j] =
+            other_way || pushes || stale.lever[j] || stale.masses || DIFFER(friction[j]);
     }
-    pose->known = true;
-    return pose;
+    return stale;
 }
 
-// True when two corrections' numbers are the same from one on: they are structs of doubles.
-static bool alike(const struct dig_correction *const a, const struct dig_correction *const b,
-                  const size_t from)
+static struct stale stale_of(const struct dig_air_segment *const segment,
+                             const struct dig_correction *const correction, const bool calm,
+                             const bool held)
 {
-    const double *const one   = (const double *)(const void *)a;
-    const double *const other = (const double *)(const void *)b;
-    const size_t        to    = sizeof *a / sizeof(double);
-    size_t              i     = from;
-    while (i < to && fabs(one[i] - other[i]) <= 0.0) {
-        i++;
-    }
-    return i == to;
+    return segment->known ? stale_between(&segment->asked, correction,
+                                          calm != segment->calm || held != segment->held)
+                          : all;
 }
 
-// What is left of the joints at one point, N at the rods, and what friction takes of it; held: what
-// it may take more.
-static void rest_at(const struct dig_machine *const    corrected,
-                    const struct dig_correction *const correction,
-                    struct dig_air_point *const point, const bool calm, const bool held,
-                    struct dig_air_pose *const kept, double rest_N[DIG_JOINTS],
-                    double taken_N[DIG_JOINTS])
+static void read_point(const struct dig_machine *const    corrected,
+                       const struct dig_correction *const correction,
+                       struct dig_air_point *const at, const bool calm,
+                       struct dig_air_balance *const kept)
 {
     for (size_t c = 0; calm && c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
-        point->sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = point->calm_Pa[c];
+        at->sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = at->calm_Pa[c];
     }
-    struct dig_readings readings;
-    const bool read = dig_readings_take(corrected, correction, &point->sample, &point->rates,
-                                        &readings) == DIG_OK;
-    const struct dig_air_pose *const pose =
-        read ? pose_of(corrected, &readings, &point->rates, kept) : NULL;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        rest_N[j]  = 0.0;
-        taken_N[j] = 0.0;
-        if (pose != NULL && pose->lever_ok[j]) {
-            const struct dig_friction *const friction = &correction->friction[j];
+    kept->rates = at->rates;
+    kept->read  = dig_readings_take(corrected, correction, &at->sample, &at->rates,
+                                    &kept->readings) == DIG_OK;
+}
 
-            const double arm_m   = pose->arm_m[j];
-            const double push_N  = readings.push[j].push_N;
-            const double rod_mps = arm_m * point->rates.velocity_radps[j];
-            const double loss_N  = dig_friction_loss_N(friction, push_N, rod_mps);
-            rest_N[j]            = (arm_m * push_N + pose->mass_Nm[j]) / arm_m;
-            taken_N[j]           = held ? held_N(friction, push_N, rod_mps, loss_N) : loss_N;
+// Levers and masses.
+static void pose(const struct dig_machine *const corrected, const struct stale *const stale,
+                 struct dig_air_balance *const kept)
+{
+    const struct dig_readings *const readings = &kept->readings;
+    if (stale->masses) {
+        const struct dig_front front = dig_front_place(corrected, readings->joint_rad);
+        dig_dynamics_Nm(corrected, &front, &kept->rates, readings->pitch_rad, kept->mass_Nm);
+    }
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        struct dig_lever lever;
+        if (stale->lever[j]) {
+            kept->lever_ok[j] = dig_lever_solve(corrected, (enum dig_joint)j,
+                                                readings->joint_rad[j], &lever) == DIG_OK;
+            kept->arm_m[j]    = kept->lever_ok[j] ? lever.arm_m : 0.0;
         }
     }
 }
 
+// What is left of a joint, N at the rod, and what friction takes of it; held: what it may take
+// more.
+static void balance_joint(const struct dig_friction *const friction, const size_t j,
+                          const bool held, struct dig_air_balance *const kept)
+{
+    kept->rest_N[j]  = 0.0;
+    kept->taken_N[j] = 0.0;
+    if (kept->read && kept->lever_ok[j]) {
+        const double arm_m   = kept->arm_m[j];
+        const double push_N  = kept->readings.push[j].push_N;
+        const double rod_mps = arm_m * kept->rates.velocity_radps[j];
+        const double loss_N  = dig_friction_loss_N(friction, push_N, rod_mps);
+        kept->rest_N[j]      = (arm_m * push_N + kept->mass_Nm[j]) / arm_m;
+        kept->taken_N[j]     = held ? held_N(friction, push_N, rod_mps, loss_N) : loss_N;
+    }
+}
+
 // Friction turns about at once where a motion does; averaged over the kernel as all else is.
-static double smooth_at(const double (*const taken_N)[DIG_JOINTS], const size_t points,
+static double smooth_at(const struct dig_air_balance balance[], const size_t points,
                         const size_t at, const size_t joint)
 {
     double sum    = 0.0;
@@ -129,65 +162,70 @@ static double smooth_at(const double (*const taken_N)[DIG_JOINTS], const size_t 
         const double w = (1.0 - u * u) * (1.0 - u * u);
         const size_t i = at + (size_t)KERNEL + (size_t)(k + KERNEL);
         if (i >= 2 * (size_t)KERNEL && i - 2 * (size_t)KERNEL < points) {
-            sum += w * taken_N[i - 2 * (size_t)KERNEL][joint];
+            sum += w * balance[i - 2 * (size_t)KERNEL].taken_N[joint];
             weight += w;
         }
     }
     return sum / weight;
 }
 
-// All of every point of a segment into the scratch: rests, and what friction takes, or may take
-// more.
-static void rest_of(const struct dig_air *const air, const size_t s,
+// Balances every point of a segment: what is left of its joints, friction taken off; or what
+// friction may take more.
+static void balance(const struct dig_air *const air, const size_t s,
                     const struct dig_correction *const correction, const bool calm, const bool held)
 {
-    double(*const rest_N)[DIG_JOINTS]         = (double(*)[DIG_JOINTS])(void *)air->scratch;
-    struct dig_air_segment *const     segment = &air->segment[s];
-    const struct dig_air_point *const point   = &air->point[segment->first_point];
-    double(*const taken_N)[DIG_JOINTS]        = rest_N + segment->points;
-    const struct dig_machine   corrected      = dig_correction_machine(&air->machine, correction);
-    struct dig_air_pose *const pose           = &air->pose[segment->first_point];
-    // Levers, masses and delay follow all of a correction but the pressures'.
-    const size_t geometry = offsetof(struct dig_correction, link) / sizeof(double);
-    if (!alike(correction, &segment->posed, geometry)) {
-        segment->posed = *correction;
-        for (size_t p = 0; p < segment->points; p++) {
-            pose[p].known = false;
+    struct dig_air_segment *const     segment   = &air->segment[s];
+    const struct dig_air_point *const point     = &air->point[segment->first_point];
+    struct dig_air_balance *const     kept      = &air->balance[segment->first_point];
+    const struct dig_machine          corrected = dig_correction_machine(&air->machine, correction);
+    const struct stale                stale     = stale_of(segment, correction, calm, held);
+    bool turned = false; // whether a point is read that was not, or the other way
+    for (size_t p = 0; p < segment->points; p++) {
+        const bool was_read = segment->known && kept[p].read;
+        if (stale.readings) {
+            struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
+            read_point(&corrected, correction, &at, calm, &kept[p]);
+        }
+        const struct stale *const now = kept[p].read == was_read ? &stale : &all;
+
+        turned = turned || now == &all;
+        if (kept[p].read) {
+            pose(&corrected, now, &kept[p]);
+        }
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            if (now->joint[j]) {
+                balance_joint(&correction->friction[j], j, held, &kept[p]);
+            }
         }
     }
     for (size_t p = 0; p < segment->points; p++) {
-        struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
-        rest_at(&corrected, correction, &at, calm, held, &pose[p], rest_N[p], taken_N[p]);
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            if (stale.joint[j] || turned) {
+                const double taken_N = smooth_at(kept, segment->points, p, j);
+                kept[p].left_N[j]    = held ? taken_N : kept[p].rest_N[j] - taken_N;
+            }
+        }
     }
-}
-
-// What is left of a joint at one point, friction taken off; or what friction may take more.
-static double of_point_N(const struct dig_air *const air, const size_t s, const size_t point,
-                         const size_t joint, const bool held)
-{
-    const double(*const rest_N)[DIG_JOINTS] = (const double(*)[DIG_JOINTS])(void *)air->scratch;
-    const size_t points                     = air->segment[s].points;
-    const double taken_N                    = smooth_at(rest_N + points, points, point, joint);
-    return held ? taken_N : rest_N[point][joint] - taken_N;
+    segment->asked = *correction;
+    segment->known = true;
+    segment->calm  = calm;
+    segment->held  = held;
 }
 
 // Of one point: pushes and loads.
 static void forces_at(const struct dig_machine *const    machine,
-                      const struct dig_correction *const correction,
-                      const struct dig_air_point *const at, double drive_N[DIG_JOINTS],
-                      double load_N[DIG_JOINTS])
+                      const struct dig_correction *const correction, struct dig_air_point *const at,
+                      double drive_N[DIG_JOINTS], double load_N[DIG_JOINTS])
 {
-    struct dig_air_pose pose = { .known = false };
-    struct dig_readings readings;
-    const bool          read =
-        dig_readings_take(machine, correction, &at->sample, &at->rates, &readings) == DIG_OK;
-    if (read) {
-        (void)pose_of(machine, &readings, &at->rates, &pose);
+    struct dig_air_balance made;
+    read_point(machine, correction, at, false, &made);
+    if (made.read) {
+        pose(machine, &all, &made);
     }
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        const bool known = read && pose.lever_ok[j] && readings.push[j].valid;
-        drive_N[j]       = known ? readings.push[j].push_N : (double)NAN;
-        load_N[j]        = known ? -pose.mass_Nm[j] / pose.arm_m[j] : (double)NAN;
+        const bool known = made.read && made.lever_ok[j] && made.readings.push[j].valid;
+        drive_N[j]       = known ? made.readings.push[j].push_N : (double)NAN;
+        load_N[j]        = known ? -made.mass_Nm[j] / made.arm_m[j] : (double)NAN;
     }
 }
 
@@ -212,8 +250,9 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
 {
     assert(air != NULL && correction != NULL);
     for (size_t s = 0; s < air->segments; s++) {
-        const struct dig_air_segment *const segment = &air->segment[s];
+        struct dig_air_segment *const       segment = &air->segment[s];
         struct dig_air_point *const         point   = &air->point[segment->first_point];
+        const struct dig_air_balance *const kept    = &air->balance[segment->first_point];
         for (size_t p = 0; p < segment->points; p++) {
             for (size_t c = 0; c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
                 const bool returns  = segment->mean_Pa[c] < segment->mean_Pa[c ^ 1U];
@@ -221,7 +260,9 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
                                               : point[p].sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + c];
             }
         }
-        rest_of(air, s, &correction[s], true, false);
+        segment->known = false; // by other pressures than these
+        balance(air, s, &correction[s], true, false);
+        segment->known = false;
         for (size_t j = 0; j < DIG_JOINTS; j++) {
             const struct dig_cylinder *const cylinder = &air->machine.cylinder[j];
 
@@ -231,7 +272,7 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
             const double        m2 =
                 head ? dig_cylinder_head_m2(cylinder) : -dig_cylinder_rod_m2(cylinder);
             for (size_t p = 0; p < segment->points; p++) {
-                point[p].calm_Pa[c] -= of_point_N(air, s, p, j, false) / (cylinder->count * m2);
+                point[p].calm_Pa[c] -= kept[p].left_N[j] / (cylinder->count * m2);
             }
         }
     }
@@ -243,13 +284,12 @@ static void of_rows(const struct dig_air *const air, const struct dig_correction
 {
     for (size_t s = 0; s < air->segments; s++) {
         const struct dig_air_segment *const segment = &air->segment[s];
-        rest_of(air, s, &correction[s], calm, held);
+        balance(air, s, &correction[s], calm, held);
         for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
             const struct dig_air_row *const row   = &air->row[r];
-            const size_t                    first = row->first - segment->first_point;
             double                          sum_N = 0.0;
-            for (size_t p = first; p < first + row->points; p++) {
-                sum_N += of_point_N(air, s, p, row->joint, held);
+            for (size_t p = row->first; p < row->first + row->points; p++) {
+                sum_N += air->balance[p].left_N[row->joint];
             }
             out[r] = sum_N / (double)row->points / row->sigma_N;
         }
