@@ -2,6 +2,7 @@
 
 #include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/dense.h"
+#include "closed_loop/numeric/vectors.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>
@@ -105,20 +106,25 @@ static void model_at(struct dig_likelihood *const l, const double x[])
 }
 
 // Fits z to the whitened residuals of the means, takes off what it explains, and leaves in z how
-// far it is from the middle.
-static void take_off_steps(const struct dig_likelihood *const l, double mean[], double z[])
+// far it is from the middle. All steps side by side: no sum waits for another.
+DIG_VECTORS static void take_off_steps(const struct dig_likelihood *const l, double mean[],
+                                       double z[])
 {
-    for (size_t k = 0; k < l->steps; k++) {
-        const double *r = mean;
-        z[k]            = l->batch->steps->middle[k];
-        for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
-            for (size_t f = 0; f < l->batch->group[g].features; f++) {
-                z[k] += l->step[k][g][f] * r[f];
+    const size_t  steps = l->steps;
+    const double *left  = mean;
+    if (steps == 0) {
+        return;
+    }
+    memcpy(z, l->batch->steps->middle, steps * sizeof z[0]);
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        for (size_t f = 0; f < l->batch->group[g].features; f++, left++) {
+            for (size_t k = 0; k < steps; k++) {
+                z[k] += l->by_feature[g][f][k] * *left;
             }
         }
     }
-    dig_cholesky_solve(l->steps, l->step_lower, z);
-    for (size_t k = 0; k < l->steps; k++) {
+    dig_cholesky_solve(steps, l->step_lower, z);
+    for (size_t k = 0; k < steps; k++) {
         double *r = mean;
         for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
             for (size_t f = 0; f < l->batch->group[g].features; f++) {
@@ -213,22 +219,38 @@ static double likeness_of_all(const struct dig_likelihood *const l, const size_t
     return all > 0.0 ? sqrt(sum / all) : one;
 }
 
+// Adds D' C^-1 D of a group to the lower triangle.
+DIG_VECTORS static void add_steps(const size_t steps, const size_t features,
+                                  const double step[][DIG_STEPS_MAX], double lower[])
+{
+    for (size_t f = 0; f < features; f++) {
+        for (size_t k = 0; k < steps; k++) {
+            for (size_t j = 0; j <= k; j++) {
+                lower[k * steps + j] += step[f][k] * step[f][j];
+            }
+        }
+    }
+}
+
 static void weigh_steps(struct dig_likelihood *const l)
 {
     const struct dig_steps *const steps = l->batch->steps;
     memset(l->step_lower, 0, l->steps * l->steps * sizeof l->step_lower[0]);
     for (size_t k = 0; k < l->steps; k++) {
         l->step_lower[k * l->steps + k] = 1.0;
-        for (size_t g = 0; g < l->batch->groups; g++) {
-            const struct dig_whitened_digs_group *const group = &l->batch->group[g];
-            dig_whitened_digs_whiten(group, steps->of[k][group->trajectory], l->step[k][g]);
-            (void)dig_common_error_squares(group, &l->error[g], l->step[k][g]);
-            for (size_t j = 0; j <= k; j++) {
-                for (size_t f = 0; f < group->features; f++) {
-                    l->step_lower[k * l->steps + j] += l->step[k][g][f] * l->step[j][g][f];
-                }
+    }
+    for (size_t g = 0; g < l->batch->groups && l->steps > 0; g++) {
+        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        for (size_t k = 0; k < l->steps; k++) {
+            double *const of = l->step[k][g];
+            dig_whitened_digs_whiten(group, steps->of[k][group->trajectory], of);
+            (void)dig_common_error_squares(group, &l->error[g], of);
+            for (size_t f = 0; f < group->features; f++) {
+                l->by_feature[g][f][k] = of[f];
             }
         }
+        add_steps(l->steps, group->features, (const double(*)[DIG_STEPS_MAX])l->by_feature[g],
+                  l->step_lower);
     }
     dig_cholesky_sure(l->steps, l->step_lower); // by the 1 on its diagonal
     l->step_log_det = dig_lower_log_det(l->steps, l->step_lower);

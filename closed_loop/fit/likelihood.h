@@ -38,10 +38,11 @@ struct dig_likelihood {
     double                  weighed_at[DIG_HYPOTHESIS_NUMBERS]; // of which this is
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
 
-    // Of the batch's steps, by that covariance: L^-1 D, and the lower triangle of 1 + sum D' C^-1
-    // D.
+    // Of the batch's steps, by that covariance: L^-1 D, step by step and feature by feature, and
+    // the lower triangle of 1 + sum D' C^-1 D.
     size_t steps;
     double step[DIG_STEPS_MAX][DIG_TRAJECTORY_MAX][DIG_FEATURES];
+    double by_feature[DIG_TRAJECTORY_MAX][DIG_FEATURES][DIG_STEPS_MAX];
     double step_lower[DIG_STEPS_MAX * DIG_STEPS_MAX];
     double step_log_det;
 };
