@@ -31,7 +31,8 @@ static const char help[] =
     "  -n N              campaigns without an effect (100); those with one follow from it\n"
     "  -j N              at a time (1)\n"
     "  --only NAME       only campaigns with this effect, of this kind (none, single, pair,\n"
-    "                    outside), or the one of this number\n"
+    "                    outside; machine-single, machine-pair: of the catalogue's effects of\n"
+    "                    the machine), or the one of this number\n"
     "  --keep DIR        leave every campaign, its trace and its truth there (dev only)\n"
     "  --make            make the campaigns, trace none (with --keep)\n"
     "  --json FILE       everything, for programs\n"
@@ -149,6 +150,16 @@ struct plan {
     uint64_t            number;
 };
 
+// Whether all of a campaign's effects are of the machine.
+static bool is_of_machine(const struct blind_order *const order)
+{
+    bool all = order->effects > 0;
+    for (size_t e = 0; e < order->effects; e++) {
+        all = all && order->effect[e].how == BLIND_BY_MACHINE;
+    }
+    return all;
+}
+
 // Numbers count what is left out too, so that a campaign is the same whatever --only says.
 static void want(struct plan *const plan, const enum blind_kind kind, const int strength,
                  const struct blind_choice *const a, const struct blind_choice *const b)
@@ -166,7 +177,12 @@ static void want(struct plan *const plan, const enum blind_kind kind, const int 
     char number[24];
     (void)snprintf(number, sizeof number, "%llu", (unsigned long long)order.number);
 
-    const bool this = plan->only == NULL || strcmp(plan->only, name[kind]) == 0 ||
+    static const char *const machine = "machine-";
+
+    const bool of_kind = plan->only != NULL && is_of_machine(&order) &&
+                         strncmp(plan->only, machine, strlen(machine)) == 0 &&
+                         strcmp(plan->only + strlen(machine), name[kind]) == 0;
+    const bool this = plan->only == NULL || of_kind || strcmp(plan->only, name[kind]) == 0 ||
                       strcmp(plan->only, number) == 0 ||
                       (a != NULL && strcmp(plan->only, a->name) == 0) ||
                       (b != NULL && strcmp(plan->only, b->name) == 0);
