@@ -139,11 +139,23 @@ static void take_weight_for_payload(struct dig_machine_search *const s)
     refine(s);
 }
 
+// What is not of the set has no value: else its leavings explain what the set does not.
+static void keep_to_set(struct dig_machine_search *const s)
+{
+    for (size_t c = 0; c < s->fit.lines.columns; c++) {
+        const enum dig_effect_id effect = s->fit.lines.column[c].effect;
+        if (effect != DIG_EFFECT_UNLISTED && ((s->set >> effect) & 1U) == 0) {
+            s->fit.lines.at[c] = s->fit.lines.absent[c];
+        }
+    }
+}
+
 // Effects join until none earns its place, `first` before all others.
 static void join(struct dig_machine_search *const s, const unsigned first)
 {
     s->set = first;
     for (int round = 1; round < ROUNDS; round++) {
+        keep_to_set(s);
         refine(s);
         // Where the first steps have led, others may do better, and some may not be needed.
         const unsigned before = s->set;
@@ -182,6 +194,55 @@ static unsigned leader_of(const struct dig_machine_search *const s, const unsign
     return best;
 }
 
+// Where the search has come to.
+struct reached {
+    unsigned set;
+    double   at[DIG_LINES_COLUMNS_MAX];
+    double   merit;
+    bool     clear;
+};
+
+// The log evidence of the set, of rows as far as they are trusted where it stands, less what its
+// effects must bring.
+static double merit_of(const struct dig_machine_search *const s)
+{
+    struct dig_fit_answer answer = { .at = NULL };
+    double                trust  = 0.0;
+    dig_fit_solve(&s->fit, s->set, &answer);
+    for (size_t r = 0; r < s->air.rows; r++) {
+        trust += log(s->fit.lines.trust[r]);
+    }
+    return answer.log_evidence + s->fit.log_none - 0.5 * s->fit.rest2 / s->fit.s2 -
+           0.5 * (double)s->air.rows * log(s->fit.s2) + trust - s->least * effects_of(s);
+}
+
+static void reach(struct dig_machine_search *const s, struct reached *const reached)
+{
+    *reached = (struct reached){ .set   = s->set,
+                                 .merit = merit_of(s),
+                                 .clear = !dig_machine_is_unclear(s) };
+    memcpy(reached->at, s->fit.lines.at, sizeof reached->at);
+}
+
+// Begins with these, and stays with what is better: that, or what was reached before.
+static void try_with(struct dig_machine_search *const s, const unsigned first,
+                     struct reached *const best)
+{
+    struct reached now;
+    begin_again(s);
+    join(s, first);
+    reach(s, &now);
+    if (now.clear == best->clear ? now.merit > best->merit : now.clear) {
+        *best = now;
+        return;
+    }
+    s->set = best->set;
+    memcpy(s->fit.lines.at, best->at, sizeof best->at);
+    s->slow  = dig_lines_judge(&s->fit.lines);
+    s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
+    make_linear(s);
+}
+
 static void select_effects(struct dig_machine_search *const s)
 {
     begin(s);
@@ -191,14 +252,19 @@ static void select_effects(struct dig_machine_search *const s)
     const unsigned first = dig_fit_select(&s->fit, s->least, 0);
     // Where one leads, the others may not be needed: they explain what its slope there does not.
     // But alone it may take what is another's for its own, and then stays there.
-    unsigned others = first;
-    unsigned leads  = leader_of(s, first);
+    unsigned       leads  = leader_of(s, first);
+    unsigned       others = first & ~leads;
+    struct reached best;
     join(s, leads);
-    while (others != 0 && first != leads && dig_machine_is_unclear(s)) {
-        others &= ~leads;
+    reach(s, &best);
+    if (others != 0) {
+        try_with(s, first, &best);
+    }
+    while (others != 0 && !best.clear) {
         begin_again(s);
-        leads = others != 0 ? leader_of(s, others) : first;
-        join(s, leads);
+        leads = leader_of(s, others);
+        others &= ~leads;
+        try_with(s, leads, &best);
     }
 }
 
