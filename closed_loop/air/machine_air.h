@@ -109,8 +109,8 @@ void dig_air_forces(const struct dig_air *air, const struct dig_correction corre
                     double drive_N[], double load_N[]);
 
 /// Residual of every row of the corrected machine, in its sigmas: rest[rows], correction[segments].
-/// calm: with the calm pressures, as slopes are taken. Asked again with a correction that differs in
-/// a part, it costs that part. Uses air's scratch.
+/// calm: with the calm pressures, as slopes are taken. Asked again with a correction that differs
+/// in a part, it costs that part. Uses air's scratch.
 void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[], bool calm,
                   double rest[]);
 

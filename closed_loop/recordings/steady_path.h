@@ -11,8 +11,8 @@
 void dig_steady_readings(size_t readings, double least, double value[]);
 
 /// Smooths the poses of the rows in place, over twice as much each time, until the path's length no
-/// longer falls: smoothing shortens noise, and hardly a path. An exact path is left as it is, and so
-/// are its ends. Returns how far, see dig_steady_average(). room: so many rows; number: twice as
+/// longer falls: smoothing shortens noise, and hardly a path. An exact path is left as it is, and
+/// so are its ends. Returns how far, see dig_steady_average(). room: so many rows; number: twice as
 /// many and one. O(rows log rows).
 size_t dig_steady_smooth(struct dig_recording *recording, double tooth_m,
                          struct dig_force_row room[], double number[]);
