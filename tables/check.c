@@ -162,11 +162,11 @@ static void check_all(struct dig_store *const store, struct dig_store_report *co
     if (scratch == NULL || packings == NULL) {
         dig_db_fail(db, DIG_ENOMEM, "no memory");
     }
-    for (size_t i = 0; db->status == DIG_OK && i < entries; i++) {
+    for (size_t i = 0; db->status == DIG_OK && scratch != NULL && i < entries; i++) {
         check_entry(store, all, i / all->trajectories, i % all->trajectories, scratch);
     }
     struct dig_store_report made = { .builds = count_builds(db) };
-    if (db->status == DIG_OK) {
+    if (db->status == DIG_OK && all != NULL && set != NULL) {
         made.holes = count_holes(set);
         made.step  = dig_grounds_step(all, &store->head);
         count_entries(all, packings, &made);

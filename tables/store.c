@@ -71,7 +71,7 @@ enum dig_status dig_store_open(const char *const path, struct dig_store **const 
     assert(path != NULL && store != NULL);
     struct dig_store *made   = NULL;
     enum dig_status   status = make_store(path, &made, error);
-    if (status != DIG_OK) {
+    if (made == NULL) {
         return status;
     }
     made->db = dig_sql_open_read(made->path, &made->head, error);
@@ -184,7 +184,7 @@ enum dig_status dig_store_create(const char *const path, const struct dig_scene 
     struct dig_store *made   = NULL;
     enum dig_status   status = dig_scene_check(scene, error);
     status                   = status == DIG_OK ? make_store(path, &made, error) : status;
-    if (status != DIG_OK) {
+    if (made == NULL) {
         return status;
     }
     const bool created = lock(made);
@@ -227,7 +227,7 @@ enum dig_status dig_store_seal(const char *const path, bool *const was,
     }
     struct dig_store *store  = NULL;
     enum dig_status   status = make_store(path, &store, error);
-    if (status != DIG_OK) {
+    if (store == NULL) {
         return status;
     }
     (void)lock(store);

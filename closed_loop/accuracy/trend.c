@@ -50,7 +50,12 @@ void dig_trend_fit(const size_t digs, const struct dig_trend_dig dig[],
     }
     if (most >= least) {
         const double range2 = (most - least) * (most - least);
-        double       n = 0.0, sx = 0.0, sy = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+        double       n      = 0.0;
+        double       sx     = 0.0;
+        double       sy     = 0.0;
+        double       xx     = 0.0;
+        double       xy     = 0.0;
+        double       yy     = 0.0;
         for (size_t i = 0; i < digs; i++) {
             for (size_t k = 0; k < dig[i].points; k++) {
                 const double x = dig[i].x[k] - 0.5 * (least + most); // from near them

@@ -135,9 +135,9 @@ static void place_in_cells(void *const context, const size_t member)
     }
 }
 
-static enum dig_status fill(struct filling *const f)
+static enum dig_status fill(struct filling *const f, struct dig_cell_grid *const g)
 {
-    struct dig_cell_grid *const g = f->grid;
+    f->grid = g;
     dig_crew_run(f->crew, find_box, f);
     size_grid(f);
     g->start  = malloc((g->cells + 1) * sizeof *g->start);
@@ -159,12 +159,11 @@ enum dig_status dig_cell_grid_fill(const struct dig_grains *const grains, const 
     struct filling f = {
         .grains = grains,
         .crew   = crew,
-        .grid   = g,
         .cell   = malloc((grains->n + 1) * sizeof *f.cell),
         .share  = calloc(dig_crew_members(crew), sizeof *f.share),
     };
     *g                           = (struct dig_cell_grid){ .cell_m = cell_m };
-    const enum dig_status status = f.cell != NULL && f.share != NULL ? fill(&f) : DIG_ENOMEM;
+    const enum dig_status status = f.cell != NULL && f.share != NULL ? fill(&f, g) : DIG_ENOMEM;
     free(f.cell);
     free(f.share);
     return status;

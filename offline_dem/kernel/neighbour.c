@@ -77,6 +77,20 @@ static bool is_listed(const struct query *const q, const struct cell_grain *cons
     return is_first && apart && dy_m >= -q->half_m && dy_m < q->half_m;
 }
 
+// Whether so far around the query nothing of the grid lies, as around most images.
+static bool is_beside(const struct query *const q, const struct dig_cell_grid *const g,
+                      const double far_m)
+{
+    return q->x_m[1] + far_m < g->low_m[1] ||
+           q->x_m[1] - far_m > g->low_m[1] + (double)g->count[1] * g->cell_m;
+}
+
+static size_t farther(const size_t reach, const size_t i, const size_t j)
+{
+    const size_t apart = i < j ? j - i : i - j;
+    return apart > reach ? apart : reach;
+}
+
 // Appends the pairs of the query's grain.
 static enum dig_status search(const struct query *const q, const struct dig_cell_grid *const g,
                               struct finds *const finds)
@@ -88,8 +102,7 @@ static enum dig_status search(const struct query *const q, const struct dig_cell
     size_t              reach = finds->reach;
     ptrdiff_t           low[3];
     ptrdiff_t           high[3];
-    if (x[1] + far_m < g->low_m[1] ||
-        x[1] - far_m > g->low_m[1] + (double)g->count[1] * g->cell_m) {
+    if (is_beside(q, g, far_m)) {
         return DIG_OK;
     }
     for (int a = 0; a < 3; a++) {
@@ -114,9 +127,7 @@ static enum dig_status search(const struct query *const q, const struct dig_cell
                 if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m &&
                     is_listed(q, y, d[1])) {
                     finds->other[count++] = y->grain;
-                    const size_t apart =
-                        y->grain < q->own.grain ? q->own.grain - y->grain : y->grain - q->own.grain;
-                    reach = apart > reach ? apart : reach;
+                    reach                 = farther(reach, q->own.grain, y->grain);
                 }
             }
         }

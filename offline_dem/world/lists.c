@@ -161,10 +161,10 @@ static enum dig_status rebuild(struct dig_world *const w, const struct dig_skin 
     struct rebuild r = {
         .world     = w,
         .skin      = skin,
-        .order     = order,
         .new_index = calloc(n + 1, sizeof *r.new_index),
         .margin    = malloc((n + 1) * sizeof *r.margin),
     };
+    r.order                  = order;
     const bool      has_room = r.new_index != NULL && r.margin != NULL;
     enum dig_status status   = has_room ? sort(&r) : DIG_ENOMEM;
     if (status == DIG_OK && with_contacts) {

@@ -22,8 +22,6 @@ struct dig_offloaded {
     bool                     is_synced; // the host has the state, contacts in the world's lists
     bool                     is_motion_synced;   // the host has the motions of the last step
     bool                     has_outdated_lists; // but all else is on the device
-    uint32_t                *was; // [was_room] the index that each grain had in the lists before
-    size_t                   was_room;
     size_t                   unpolled_steps;
 };
 
@@ -37,7 +35,6 @@ static void destroy(struct dig_world *const w)
     struct dig_offloaded *const o = own_of(w);
     o->device->destroy(o->device);
     dig_device_arrays_finish(&o->arrays);
-    free(o->was);
     free(o);
 }
 
@@ -84,31 +81,23 @@ static enum dig_status upload(struct dig_world *const w)
     return o->device->upload(o->device, &o->arrays.view);
 }
 
-static enum dig_status make_was_room(struct dig_offloaded *const o, const size_t n)
-{
-    if (o->was_room < n + 1) {
-        free(o->was);
-        o->was      = malloc((n + 1) * sizeof *o->was);
-        o->was_room = o->was != NULL ? n + 1 : 0;
-    }
-    return o->was != NULL ? DIG_OK : DIG_ENOMEM;
-}
-
 // Rebuilds the lists from the motions on the host; the device keeps the state.
 static enum dig_status relist(struct dig_world *const w)
 {
     struct dig_offloaded *const o      = own_of(w);
-    enum dig_status             status = make_was_room(o, w->grains.n);
-    status = status == DIG_OK ? dig_lists_sort(w, wide_skin, o->was) : status;
+    uint32_t *const             was    = malloc((w->grains.n + 1) * sizeof *was);
+    enum dig_status             status = was != NULL ? DIG_OK : DIG_ENOMEM;
+    status = status == DIG_OK ? dig_lists_sort(w, wide_skin, was) : status;
     status = status == DIG_OK ? dig_device_arrays_write_lists(w, &o->arrays) : status;
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        const struct dig_device_move move = { was, w->period_y_m,
+                                              dig_period_inverse(w->period_y_m) };
+        o->unpolled_steps                 = 0;
+        o->has_outdated_lists             = false;
+        status                            = o->device->relist(o->device, &o->arrays.view, &move);
     }
-    const struct dig_device_move move = { o->was, w->period_y_m,
-                                          dig_period_inverse(w->period_y_m) };
-    o->unpolled_steps                 = 0;
-    o->has_outdated_lists             = false;
-    return o->device->relist(o->device, &o->arrays.view, &move);
+    free(was);
+    return status;
 }
 
 // Where the host has changed the world all of it goes to the device; else new lists do.

@@ -6,14 +6,14 @@ table=${TABLE:-tables/reference_rig.sqlite} scene=rig
 data=$PWD/tests/data/liggghts_more
 
 trace() { # GRAVEL OPTION…: all its beds, into $work/GRAVEL.json and .txt
-    local role=identify simple
+    local role=identify simple other=${OTHER:-actual}
     mkdir -p "$work/$1"
     {
         echo "scene: $scene"
         echo "recordings:"
         for simple in "$data/${1}"_seed?__simpleA.csv; do
             echo "  - {file: $simple, trajectory: simpleA, role: $role}"
-            echo "  - {file: ${simple%simpleA.csv}actual.csv, trajectory: actual, role: fit}"
+            echo "  - {file: ${simple%simpleA.csv}$other.csv, trajectory: $other, role: fit}"
             role=fit
         done
     } >"$work/$1/campaign.yaml"
@@ -153,6 +153,16 @@ for gravel in mu0.4_mur0.6_rho2000 mu0.6_mur0.6_rho2200; do
     check "... of a gravel of its density, within its interval" within "${gravel#*rho}" \
         "$(number lagging_$gravel density_kgpm3 low)" "$(number lagging_$gravel density_kgpm3 high)"
     check "... and no machine is corrected by it" eval 'tr -d " \n" <"$work/lagging.model" | grep -q "\"effects\":\[\]"'
+done
+
+# One dig along either of two trajectories. By one alone a fit may take any rock, or any contrast of a layer.
+data=$PWD/tests/data/liggghts_judge
+for case in rock22:obstacle:diameter_m:.022 layer45:layering:layer_m:.045; do
+    IFS=: read -r kind name parameter truth <<<"$case"
+    OTHER=simpleB trace fast_${kind}_mu0.35_mur0.75_rho1800
+    check "a ${kind%%[0-9]*} of two digs is named" [ "$(verdict fast_${kind}_mu0.35_mur0.75_rho1800)" = "\"$name\"" ]
+    check "... within its interval" within $truth "$(number fast_${kind}_mu0.35_mur0.75_rho1800 $parameter low)" \
+        "$(number fast_${kind}_mu0.35_mur0.75_rho1800 $parameter high)"
 done
 
 # A bucket of friction .15 in gravel of .6; the table's is as rough as the gravel.
