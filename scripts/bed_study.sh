@@ -8,7 +8,7 @@
 #   BIN=build/bin OUT=build/bed_study [ENGINE=kernel] [JOBS=1] scripts/bed_study.sh [across] [finest] [finer] [forty] [room] [hard] [firm] [shipped]
 # On one of two busy threads of a core `across` takes half an hour, `room` 25 minutes, `hard` and `firm` 5 each; STIFFEST=1 adds
 # 150 MPa to `firm`, at .9/.9 as well. `finest`, 20 grains across, is for a graphics card: ENGINE=cuda JOBS=4, three minutes. `finer`, 28 across, takes ENGINE=single 50 minutes of a core a bed, ENGINE=cuda JOBS=2 five minutes for two.
-# `forty`, 40 across, takes a card seven minutes for two beds. A bed that is poured is not poured again.
+# `forty`, 40 across, takes a card ten minutes for two beds. A bed that is poured is not poured again.
 set -euo pipefail
 bin=${BIN:-build/bin} out=${OUT:-build/bed_study} engine=${ENGINE:-kernel} jobs=${JOBS:-1} scene=config/scenes/rig.yaml
 mkdir -p "$out"

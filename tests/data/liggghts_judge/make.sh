@@ -71,31 +71,8 @@ work=$(mktemp -d)
 [ -n "${KEEP:-}" ] || trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-awk -v tooth="$tooth" 'function point(k, y) { print "   vertex", x[k], y, z[k] }
-    function facet(a, ya, b, yb, c, yc) {
-        print " facet normal 0 0 0\n  outer loop"; point(a, ya); point(b, yb); point(c, yc)
-        print "  endloop\n endfacet" }
-    BEGIN {
-        split("0 -.04 -.052 -.04 -.012", x, " "); split("-.09 -.072 -.042 -.012 0", z, " ")
-        split(tooth, t, " "); x[1] = t[1]; z[1] = t[2]
-        print "solid bucket"
-        for (k = 1; k < 5; k++) { facet(k, -.035, k + 1, -.035, k + 1, .035); facet(k, -.035, k + 1, .035, k, .035) }
-        for (k = 2; k < 5; k++) { facet(1, -.035, k, -.035, k + 1, -.035); facet(1, .035, k, .035, k + 1, .035) }
-        print "endsolid bucket" }' > bucket.stl
-[ -z "$rock" ] || awk -v r="$rock" -v x0=.1138 -v z0="$height" 'function point(i, j) {
-        a = pi * i / 8; b = 2 * pi * j / 12
-        printf "   vertex %.9g %.9g %.9g\n", x0 + r * sin(a) * cos(b), r * sin(a) * sin(b), z0 + r * cos(a) }
-    function facet(i, j, k, l, m, n) {
-        print " facet normal 0 0 0\n  outer loop"; point(i, j); point(k, l); point(m, n)
-        print "  endloop\n endfacet" }
-    BEGIN {
-        pi = atan2(0, -1)
-        print "solid rock"
-        for (i = 0; i < 8; i++) for (j = 0; j < 12; j++) {
-            if (i > 0) facet(i, j, i + 1, j, i, j + 1)
-            if (i < 7) facet(i + 1, j, i + 1, j + 1, i, j + 1)
-        }
-        print "endsolid rock" }' > rock.stl
+awk -v s=1 -v tooth="$tooth" -f "$here/../liggghts_digs/bucket_stl.awk" >bucket.stl
+[ -z "$rock" ] || awk -v r="$rock" -v x0=.1138 -v z0="$height" -f "$here/../liggghts_digs/rock_stl.awk" >rock.stl
 
 # A 4 x 4 matrix of types: grains of type 1 and 3, grains of type 2 among themselves, the bucket. Unlike grains have the mean.
 pairs() { # GRAINS OTHER_GRAINS BUCKET
