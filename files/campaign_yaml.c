@@ -89,6 +89,21 @@ static enum dig_status convert_recording(const char *const yaml, const size_t i,
     return status;
 }
 
+// A dig is recorded once: named twice it would count twice, or judge what it was fitted to.
+static enum dig_status check_once(const char *const yaml, const struct dig_campaign *const campaign,
+                                  const size_t i, struct dig_error *const error)
+{
+    for (size_t k = 0; k < i; k++) {
+        if (strcmp(campaign->recording[k].file, campaign->recording[i].file) == 0) {
+            return dig_yaml_refuse(yaml, error,
+                                   "recordings[%zu].file: that of recordings[%zu], expected a dig "
+                                   "of its own",
+                                   i, k);
+        }
+    }
+    return DIG_OK;
+}
+
 static enum dig_status take(const char *const yaml, cyaml_data_t *const loaded, void *const into,
                             struct dig_error *const error)
 {
@@ -99,6 +114,7 @@ static enum dig_status take(const char *const yaml, cyaml_data_t *const loaded, 
     }
     for (size_t i = 0; status == DIG_OK && i < campaign->recordings; i++) {
         status = convert_recording(yaml, i, &campaign->recording[i], error);
+        status = status == DIG_OK ? check_once(yaml, campaign, i, error) : status;
     }
     if (status == DIG_OK) {
         *(struct dig_campaign *)into = *campaign;

@@ -1,7 +1,7 @@
 #include "closed_loop/recordings/observe.h"
 
 #include "closed_loop/recordings/alignment.h"
-#include "closed_loop/recordings/force_units.h"
+#include "closed_loop/recordings/force_check.h"
 #include "closed_loop/recordings/lateness.h"
 #include "closed_loop/recordings/path_depth.h"
 #include "closed_loop/recordings/path_match.h"
@@ -252,7 +252,7 @@ static enum dig_status observe(const struct dig_curve_set *const set,
             "the moment of the whole dig",
             half_s);
     }
-    const enum dig_status sized = dig_force_units_check(set, &o, error);
+    const enum dig_status sized = dig_force_check(set, &o, error);
     if (sized != DIG_OK) {
         return sized;
     }

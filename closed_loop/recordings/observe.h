@@ -23,7 +23,7 @@
 ///
 /// DIG_ENOMATCH: no trajectory of the set within DIG_OBSERVE_PATH_LIMIT; *error names the nearest
 /// and its distance. DIG_EINVAL: a recording that does not move, lacks the moment, or is of
-/// another unit (recordings/force_units.h). DIG_ENOMEM.
+/// another unit (recordings/force_check.h). DIG_ENOMEM.
 /// O(rows).
 DIG_MUST_CHECK enum dig_status dig_observe_dig(const struct dig_curve_set *set,
                                                const struct dig_recording *recording,

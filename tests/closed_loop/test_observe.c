@@ -461,7 +461,7 @@ TEST(what_lies_beyond_the_trajectory_is_left_out)
     dig_recording_finish(&l);
 }
 
-// closed_loop/recordings/force_units.c
+// closed_loop/recordings/force_check.c
 TEST(a_moment_in_kilonewton_metres_is_refused)
 {
     struct dig_curve_set    set    = two_digs();

@@ -68,6 +68,9 @@ TEST(what_a_campaign_cannot_be_is_refused_with_file_line_and_key)
           "campaign.yaml:3: recordings[0].trajectory: \"../t\", expected a name" },
         { "scene: s\nrecordings:\n  - {file: a, trajectory: \"`touch OWNED`\", role: fit}\n",
           "recordings[0].trajectory: " },
+        { "scene: s\nrecordings:\n  - {file: a, trajectory: t, role: fit}\n"
+          "  - {file: a, trajectory: t, role: holdout}\n",
+          "campaign.yaml:4: recordings[1].file: that of recordings[0]" },
     };
     static struct dig_campaign campaign;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

@@ -1,6 +1,6 @@
-// Tests for closed_loop/recordings/force_units.c
+// Tests for closed_loop/recordings/force_check.c
 
-#include "closed_loop/recordings/force_units.h"
+#include "closed_loop/recordings/force_check.h"
 
 #include "tests/made_table.h"
 #include "tests/testlib.h"
@@ -26,7 +26,7 @@ static struct dig_measured *dig_of(const struct dig_curve_set *const set, const 
     return dig;
 }
 
-TEST(forces_in_kilonewtons_are_refused_and_ground_far_off_the_table_is_not)
+TEST(forces_in_another_unit_or_direction_are_refused_and_ground_far_off_the_table_is_not)
 {
     const struct made_options   options = { .relative_sd = 0.1, .packings = 3 };
     struct dig_curve_set *const set     = made_table(&options);
@@ -42,16 +42,18 @@ TEST(forces_in_kilonewtons_are_refused_and_ground_far_off_the_table_is_not)
         { 1e-3, 1e-3, "weakest gravel" },
         { 1e3, 1e3, "strongest gravel" },
         { 1.0, 1e3, "Fx_N, Fz_N" },
+        { -1.0, -1.0, "My_Nm: against" },
+        { 1.0, -1.0, "Fx_N, Fz_N: against" },
     };
     for (size_t e = 0; e < set->entries; e += set->entries - 1) {
         for (size_t k = 0; k < sizeof digs / sizeof digs[0]; k++) {
             struct dig_error           error = { "" };
             struct dig_measured *const dig   = dig_of(set, e, digs[k].moment, digs[k].forces);
-            const enum dig_status      is    = dig_force_units_check(set, dig, &error);
+            const enum dig_status      is    = dig_force_check(set, dig, &error);
             assert_int_equal(is, digs[k].says == NULL ? DIG_OK : DIG_EINVAL);
             if (digs[k].says != NULL) {
                 assert_contains(error.text, digs[k].says);
-                assert_contains(error.text, "expected N");
+                assert_contains(error.text, ", expected ");
             }
             free(dig);
         }
@@ -67,7 +69,29 @@ TEST(forces_that_are_not_measured_are_not_asked)
     struct dig_error            error   = { "" };
     struct dig_measured *const  dig     = dig_of(set, 0, 1.0, 0.0);
     dig->measured[DIG_CHANNEL_FX_N] = dig->measured[DIG_CHANNEL_FZ_N] = false;
-    assert_ok(dig_force_units_check(set, dig, &error), error);
+    assert_ok(dig_force_check(set, dig, &error), error);
+    free(dig);
+    made_table_destroy(set);
+}
+
+TEST(a_sensor_that_stands_still_is_refused)
+{
+    const struct made_options   options = { .relative_sd = 0.1, .packings = 3 };
+    struct dig_curve_set *const set     = made_table(&options);
+    struct dig_measured *const  dig     = dig_of(set, 0, 1.0, 1.0);
+    struct dig_error            error   = { "" };
+    static const struct dig_move {
+        size_t first, end;
+    } stuck[] = { { 1, 3 }, { 0, 3 } };
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t c = stuck[i].first; c < stuck[i].end; c++) {
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                dig->value[c][k] = 5.0;
+            }
+        }
+        assert_int_equal(dig_force_check(set, dig, &error), DIG_EINVAL);
+        assert_contains(error.text, i == 0 ? "Fx_N, Fz_N: one value" : "My_Nm: one value");
+    }
     free(dig);
     made_table_destroy(set);
 }
