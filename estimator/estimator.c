@@ -156,12 +156,14 @@ static void finish_dig(struct dig_estimator *const e)
 // Steps phase, window and path by one valid moment.
 static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, const double dt_s,
                        const struct dig_wrench *const     wrench,
-                       const struct dig_path_point *const point)
+                       const struct dig_path_point *const point,
+                       const double                       joint_rad[const DIG_JOINTS])
 {
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
-    dig_recorded_dig_add(e->recording, e->set, e->lambda, time_ns, wrench, e->phase.bias_Nm, point);
+    dig_recorded_dig_add(e->recording, e->set, e->lambda, time_ns, wrench, e->phase.bias_Nm, point,
+                         joint_rad);
 
     switch (event) {
     case DIG_EVENT_CONTACT: start_path(e, point); break;
@@ -204,9 +206,11 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
     const double step_s = fmin(dt_s, longest_step_s);
 
     // A sample without a moment is skipped; the dig goes on with the next one.
-    const struct dig_path_point point = rig_point(e, &front);
+    const struct dig_path_point point                 = rig_point(e, &front);
+    const double *const         at                    = front.attitude_rad;
+    const double                joint_rad[DIG_JOINTS] = { at[0], at[1] - at[0], at[2] - at[1] };
     if (wrench.moment_valid) {
-        follow_dig(e, sample->time_ns, step_s, &wrench, &point);
+        follow_dig(e, sample->time_ns, step_s, &wrench, &point, joint_rad);
         wrench.My_Nm -= e->phase.bias_Nm;
     }
     const enum dig_motion motion =
@@ -217,7 +221,8 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
         .wrench     = wrench,
         .pin_X_m    = front.pin_m[DIG_JOINT_BUCKET].x,
         .pin_Z_m    = front.pin_m[DIG_JOINT_BUCKET].y,
-        .phi_rad    = front.attitude_rad[DIG_JOINT_BUCKET],
+        .phi_rad    = at[DIG_JOINT_BUCKET],
+        .joint_rad  = { joint_rad[0], joint_rad[1], joint_rad[2] },
         .phase      = e->phase.phase,
         .dig_count  = e->digs,
         .trajectory = e->choice.current,

@@ -53,6 +53,6 @@ enum dig_status dig_estimator_solve(struct dig_estimator *const    e,
         at.value[DIG_SIGNAL_BOOM_rad + j] -= back_rad;
         rates.velocity_radps[j] -= delay_s * rates.acceleration_radps2[j];
     }
-    return dig_wrench_correct(&e->corrected.machine, &e->corrected.correction, &at, &rates, true,
-                              wrench, front);
+    return dig_wrench_correct(&e->corrected.machine, &e->corrected.correction, &at, &rates,
+                              DIG_WITH_SIGMA, wrench, front);
 }

@@ -68,7 +68,8 @@ static void solve_all(const struct dig_machine *const     machine,
         if (fabs(correction->delay_s) > 0.0) {
             put_back(dig, i, correction->delay_s, &sample, &rates);
         }
-        r.solved = dig_wrench_correct(&corrected, correction, &sample, &rates, with_sigma,
+        r.solved = dig_wrench_correct(&corrected, correction, &sample, &rates,
+                                      DIG_WITH_INERTIA | (with_sigma ? DIG_WITH_SIGMA : 0),
                                       &r.wrench, &front) == DIG_OK;
         if (r.solved) {
             r.pose = dig_machine_dig_point(set, dig, &front);

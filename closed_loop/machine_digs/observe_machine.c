@@ -5,7 +5,7 @@
 #include "estimator/approach/observe_dig.h"
 #include "estimator/estimator.h"
 #include "estimator/match/depth.h"
-#include "estimator/track/inertia_error.h"
+#include "estimator/track/inertia.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -23,15 +23,15 @@ static enum dig_status append(struct dig_observed_digs *const     digs,
 }
 
 // Drives the estimator through the recording and observes what it hands out.
-static enum dig_status drive(struct dig_estimator *const                estimator,
-                             const struct dig_curve_set *const          set,
-                             const struct dig_estimator_settings *const settings,
-                             const struct dig_machine_recording *const  recording,
-                             struct dig_observed_digs *const            digs)
+static enum dig_status
+drive(struct dig_estimator *const estimator, const struct dig_machine *const machine,
+      const struct dig_curve_set *const set, const struct dig_estimator_settings *const settings,
+      const struct dig_machine_recording *const recording, struct dig_observed_digs *const digs)
 {
     struct dig_estimate    estimate = { .dig_count = 0 };
     struct dig_observation observation;
     enum dig_status        status = DIG_OK;
+    const double           lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t i = 0; i < recording->rows && status == DIG_OK; i++) {
         // A sample it cannot use is passed over, as in the daemon's tick.
         if (dig_estimator_step(estimator, &recording->row[i], &estimate) != DIG_OK) {
@@ -39,6 +39,7 @@ static enum dig_status drive(struct dig_estimator *const                estimato
         }
         struct dig_recorded_dig *const dug = dig_estimator_take_recording(estimator);
         if (dug != NULL) {
+            dig_inertia_take_off(machine, lambda, &dug->window);
             status = dig_recorded_dig_observe(set, settings, dug, &observation) == DIG_OK
                          ? append(digs, &observation)
                          : DIG_OK;
@@ -49,15 +50,12 @@ static enum dig_status drive(struct dig_estimator *const                estimato
     return status;
 }
 
-// Adds what the balance of forces leaves out, and tells the digs' depths; drops those off the
-// table.
-static enum dig_status tell_depths(const struct dig_machine *const   machine,
-                                   const struct dig_curve_set *const set, const double limit_m,
+// Tells the digs' depths; drops those off the table.
+static enum dig_status tell_depths(const struct dig_curve_set *const set, const double limit_m,
                                    struct dig_observed_digs *const digs)
 {
-    const double              lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
-    const size_t              bytes  = dig_depth_fit_size(set);
-    void *const               memory = bytes > 0 ? malloc(bytes) : NULL;
+    const size_t              bytes                        = dig_depth_fit_size(set);
+    void *const               memory                       = bytes > 0 ? malloc(bytes) : NULL;
     bool                      measured[DIG_TRAJECTORY_MAX] = { false };
     size_t                    kept                         = 0;
     struct dig_approach_error error[DIG_TRAJECTORY_MAX];
@@ -71,7 +69,6 @@ static enum dig_status tell_depths(const struct dig_machine *const   machine,
             dig_approach_error_measure(set, t, &error[t]);
             measured[t] = true;
         }
-        dig_inertia_error_add(machine, lambda, dig);
         if (dig_depth_fit(set, error, limit_m, memory, dig) == DIG_OK &&
             dig->last - dig->first >= DIG_OBSERVE_LEAST_PATH) {
             digs->dig[kept++] = *dig;
@@ -98,9 +95,11 @@ static enum dig_status observe(const struct dig_machine *const           machine
     if (corrected != NULL) {
         dig_estimator_set_machine(estimator, corrected);
     }
-    status = drive(estimator, set, &settings, recording, digs);
+    const bool corrects = corrected != NULL && corrected->corrects;
+    status =
+        drive(estimator, corrects ? &corrected->machine : machine, set, &settings, recording, digs);
     if (status == DIG_OK) {
-        status = tell_depths(machine, set, settings.path_limit_m, digs);
+        status = tell_depths(set, settings.path_limit_m, digs);
     }
     if (status != DIG_OK) {
         return dig_error_set(error, status, "out of memory");

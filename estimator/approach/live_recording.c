@@ -1,6 +1,7 @@
 #include "estimator/approach/live_recording.h"
 
 #include "estimator/approach/observe_dig.h"
+#include "estimator/track/inertia.h"
 
 #include <assert.h>
 #include <string.h>
@@ -24,7 +25,8 @@ void dig_live_recording_add(struct dig_live_recording *const  live,
     }
     const struct dig_path_point point =
         dig_recorded_dig_point(set, lambda, e->pin_X_m, e->pin_Z_m, e->phi_rad);
-    dig_recorded_dig_add(&live->recording, set, lambda, e->time_ns, &e->wrench, 0.0, &point);
+    dig_recorded_dig_add(&live->recording, set, lambda, e->time_ns, &e->wrench, 0.0, &point,
+                         e->joint_rad);
 
     const bool in_soil = e->phase == DIG_PHASE_CONTACT || e->phase == DIG_PHASE_DIG;
     if (!live->digging && e->phase == DIG_PHASE_CONTACT) {
@@ -41,6 +43,7 @@ void dig_live_recording_add(struct dig_live_recording *const  live,
 
 enum dig_status dig_live_recording_observe(const struct dig_curve_set *const          set,
                                            const struct dig_estimator_settings *const settings,
+                                           const struct dig_machine *const            machine,
                                            const struct dig_live_recording *const     live,
                                            struct dig_recorded_dig *const             scratch,
                                            struct dig_observation *const              observation)
@@ -57,5 +60,9 @@ enum dig_status dig_live_recording_observe(const struct dig_curve_set *const    
     scratch->window.count                 = window->count;
     scratch->window.stride                = window->stride;
     memcpy(scratch->window.sample, window->sample, window->count * sizeof window->sample[0]);
+    if (machine != NULL) {
+        dig_inertia_take_off(machine, machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m,
+                             &scratch->window);
+    }
     return dig_recorded_dig_observe(set, settings, scratch, observation);
 }

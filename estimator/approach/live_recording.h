@@ -24,14 +24,15 @@ void dig_live_recording_clear(struct dig_live_recording *live, const struct dig_
 void dig_live_recording_add(struct dig_live_recording *live, const struct dig_curve_set *set,
                             double lambda, const struct dig_estimate *estimate);
 
-/// Observes the dig so far, as dig_recorded_dig_observe() does a finished one. The observation ends
-/// half a smoothing window before the newest sample. dig_count is the one the dig will get.
-/// DIG_ENOMATCH also when no dig is in progress. Copies the recording (2 MB at most) into scratch
-/// and works there: two to three milliseconds.
+/// Observes the dig so far, as dig_recorded_dig_observe() does a finished one, the machine's
+/// inertia taken off (estimator/track/inertia.h; NULL: none). The observation ends half a smoothing
+/// window before the newest sample. dig_count is the one the dig will get. DIG_ENOMATCH also when
+/// no dig is in progress. Copies the recording (2 MB at most) into scratch and works there: two to
+/// three milliseconds.
 DIG_MUST_CHECK enum dig_status
 dig_live_recording_observe(const struct dig_curve_set          *set,
                            const struct dig_estimator_settings *settings,
-                           const struct dig_live_recording *live, struct dig_recorded_dig *scratch,
-                           struct dig_observation *observation);
+                           const struct dig_machine *machine, const struct dig_live_recording *live,
+                           struct dig_recorded_dig *scratch, struct dig_observation *observation);
 
 #endif // DIG_ESTIMATOR_APPROACH_LIVE_RECORDING_H

@@ -3,6 +3,7 @@
 #ifndef DIG_ESTIMATOR_TRACK_ESTIMATE_H
 #define DIG_ESTIMATOR_TRACK_ESTIMATE_H
 
+#include "core/machine.h"
 #include "estimator/track/motion.h"
 #include "estimator/track/phase.h"
 #include "estimator/wrench/soil_wrench.h"
@@ -14,6 +15,7 @@ struct dig_estimate {
     int64_t           time_ns;
     struct dig_wrench wrench;
     double            pin_X_m, pin_Z_m, phi_rad; // pin and absolute direction pin -> tooth, machine
+    double            joint_rad[DIG_JOINTS];     // boom, arm, bucket; by a force sensor boom, arm 0
     enum dig_dig_phase phase;
     uint32_t           dig_count; // digs finished since start
     int             trajectory;   // of the dig in progress, index into the curve set; -1: not known

@@ -47,9 +47,11 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *const s
 void dig_recorded_dig_add(struct dig_recorded_dig *const    recording,
                           const struct dig_curve_set *const set, const double lambda,
                           const int64_t time_ns, const struct dig_wrench *const wrench,
-                          const double bias_Nm, const struct dig_path_point *const point)
+                          const double bias_Nm, const struct dig_path_point *const point,
+                          const double joint_rad[const DIG_JOINTS])
 {
     assert(recording != NULL && set != NULL && wrench != NULL && point != NULL);
+    assert(joint_rad != NULL);
     const double step_s = 1e-9 * (double)(time_ns - recording->last_ns);
     const double hole_s = sqrt(lambda) * dig_window_hole_s(set->smooth_half_s);
     recording->missing |= recording->window.open && step_s > hole_s;
@@ -60,6 +62,7 @@ void dig_recorded_dig_add(struct dig_recorded_dig *const    recording,
     const struct dig_window_sample sample  = {
          .time_s     = 1e-9 * (double)time_ns / sqrt(lambda),
          .pose       = *point,
+         .joint_rad  = { joint_rad[0], joint_rad[1], joint_rad[2] },
          .has_forces = wrench->force_valid,
          .value      = { (wrench->My_Nm - bias_Nm) / lambda4, wrench->Fx_N / lambda3,
                          wrench->Fz_N / lambda3 },

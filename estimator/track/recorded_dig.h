@@ -33,7 +33,8 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *set, do
 /// Adds one wrench of the machine to the window, in rig scale and rig time.
 void dig_recorded_dig_add(struct dig_recorded_dig *recording, const struct dig_curve_set *set,
                           double lambda, int64_t time_ns, const struct dig_wrench *wrench,
-                          double bias_Nm, const struct dig_path_point *point);
+                          double bias_Nm, const struct dig_path_point *point,
+                          const double joint_rad[DIG_JOINTS]);
 
 /// Size of the struct, about 2 MB: for allocating one.
 size_t dig_recorded_dig_size(void);

@@ -77,6 +77,14 @@ static int by_time(const void *const left, const void *const right)
     return (a > b) - (a < b);
 }
 
+void dig_window_sort(struct dig_window *const window)
+{
+    assert(window != NULL);
+    if (window->stride > 1) {
+        qsort(window->sample, window->count, sizeof window->sample[0], by_time);
+    }
+}
+
 // A range of samples.
 struct range {
     size_t first, end;
@@ -242,10 +250,7 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
                                    const double half_s, struct dig_observation *const observation)
 {
     assert(window != NULL && route != NULL && track != NULL && observation != NULL);
-
-    if (window->stride > 1) {
-        qsort(window->sample, window->count, sizeof window->sample[0], by_time);
-    }
+    dig_window_sort(window);
     const struct range range = follow(window, route, track, limit_m);
     if (range.end < range.first + 3 || has_hole(window, range, half_s)) {
         return DIG_ENOMATCH;

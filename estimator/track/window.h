@@ -9,6 +9,7 @@
 #define DIG_ESTIMATOR_TRACK_WINDOW_H
 
 #include "core/curve.h"
+#include "core/machine.h"
 #include "core/observation.h"
 #include "estimator/track/route.h"
 #include "estimator/track/track.h"
@@ -20,6 +21,7 @@
 struct dig_window_sample {
     double                time_s;
     struct dig_path_point pose;
+    double                joint_rad[DIG_JOINTS]; // of a machine with cylinders
     bool                  has_forces;
     double                value[DIG_FORCE_CHANNELS];
     float                 sigma[DIG_FORCE_CHANNELS]; // 1 sigma
@@ -50,6 +52,9 @@ void dig_window_add(struct dig_window *window, const struct dig_window_sample *s
 /// it.
 void dig_window_open(struct dig_window *window);
 void dig_window_close(struct dig_window *window);
+
+/// Puts the samples of a long dig in the order of time; may allocate: not in the tick.
+void dig_window_sort(struct dig_window *window);
 
 /// A gap between samples longer than this, rig time, is a hole.
 double dig_window_hole_s(double half_s);

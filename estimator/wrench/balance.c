@@ -58,6 +58,7 @@ enum dig_status dig_readings_take(const struct dig_machine *const    machine,
         .pitch_rad = 0.0,
         .friction  = correction != NULL ? correction->friction : NULL,
         .rates     = rates,
+        .inertia   = rates != NULL,
     };
     if (sample->valid[DIG_SIGNAL_PITCH_rad]) {
         r.pitch_rad = sample->value[DIG_SIGNAL_PITCH_rad];
@@ -151,10 +152,11 @@ struct dig_balance dig_balance_solve(const struct dig_machine *const  machine,
                                      const struct dig_front *const    front)
 {
     assert(machine != NULL && readings != NULL && front != NULL);
+    assert(!readings->inertia || readings->rates != NULL);
     struct dig_balance b = { .moment_ok = true, .force_ok = true };
 
     double mass_Nm[DIG_JOINTS];
-    if (readings->rates == NULL) {
+    if (!readings->inertia) {
         dig_statics_weight_Nm(machine, front, readings->pitch_rad, mass_Nm);
     } else {
         dig_dynamics_Nm(machine, front, readings->rates, readings->pitch_rad, mass_Nm);
@@ -179,4 +181,23 @@ struct dig_balance dig_balance_solve(const struct dig_machine *const  machine,
                   dig_vec2_sub(pin, front->pin_m[DIG_JOINT_BOOM]));
     }
     return b;
+}
+
+void dig_balance_add_inertia_variance(const struct dig_machine *const machine,
+                                      const struct dig_front *const   front,
+                                      const struct dig_balance *const balance,
+                                      const double sigma_radps2, double variance[DIG_PARTS])
+{
+    assert(machine != NULL && front != NULL && balance != NULL && variance != NULL);
+    double inertia_kgm2[DIG_JOINTS][DIG_JOINTS];
+    dig_dynamics_inertia_kgm2(machine, front, inertia_kgm2);
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        for (int p = 0; p < DIG_PARTS; p++) {
+            double by_turn = 0.0;
+            for (int j = 0; j < DIG_JOINTS; j++) {
+                by_turn -= balance->by_moment[p][j] * inertia_kgm2[j][k];
+            }
+            variance[p] += pow(by_turn * sigma_radps2, 2.0);
+        }
+    }
 }

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAST = 5 };
-
 // Sums of a parabola's normal equations over times u (about the window's middle) and values.
 struct sums {
     double n, u1, u2, u3, u4;
@@ -81,7 +79,7 @@ struct dig_rates dig_rates_step(struct dig_rates_filter *const filter, const int
 
     const int64_t first_ns = filter->time_ns[slot(filter, filter->count - 1)];
     const double  span_s   = 1e-9 * (double)(time_ns - first_ns);
-    if (filter->count < LEAST || !(span_s >= 0.5 * filter->window_s)) {
+    if (filter->count < DIG_RATES_LEAST || !(span_s >= 0.5 * filter->window_s)) {
         return still;
     }
     struct sums sums = { .n = 0.0 };
@@ -91,6 +89,18 @@ struct dig_rates dig_rates_step(struct dig_rates_filter *const filter, const int
         add(&sums, u, filter->joint_rad[i], joint_rad);
     }
     return fit(&sums, 0.5 * span_s, sigma_rad);
+}
+
+struct dig_rates dig_rates_at(const size_t at, const size_t n, const double time_s[],
+                              const double joint_rad[], const double sigma_rad)
+{
+    assert(at < n && time_s != NULL && joint_rad != NULL);
+    struct sums sums = { .n = 0.0 };
+    for (size_t i = 0; i < n; i++) {
+        add(&sums, time_s[i] - time_s[at], &joint_rad[DIG_JOINTS * i], &joint_rad[DIG_JOINTS * at]);
+    }
+    return n < DIG_RATES_LEAST ? (struct dig_rates){ .velocity_sigma = 0.0 }
+                               : fit(&sums, 0.0, sigma_rad);
 }
 
 void dig_rates_centred(const size_t n, const double time_s[], const double joint_rad[],
@@ -104,13 +114,12 @@ void dig_rates_centred(const size_t n, const double time_s[], const double joint
         while (time_s[first] < time_s[i] - reach_s) {
             first++;
         }
-        struct sums sums = { .n = 0.0 };
-        for (size_t k = first; k < n && time_s[k] <= time_s[i] + reach_s; k++) {
-            add(&sums, time_s[k] - time_s[i], &joint_rad[DIG_JOINTS * k],
-                &joint_rad[DIG_JOINTS * i]);
+        size_t end = i;
+        while (end < n && time_s[end] <= time_s[i] + reach_s) {
+            end++;
         }
-        rates[i] = sums.n < LEAST ? (struct dig_rates){ .velocity_sigma = 0.0 }
-                                  : fit(&sums, 0.0, sigma_rad);
+        rates[i] = dig_rates_at(i - first, end - first, &time_s[first],
+                                &joint_rad[DIG_JOINTS * first], sigma_rad);
     }
 }
 

@@ -17,7 +17,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define DIG_RATES_MAX 512 // angles kept by the causal filter
+#define DIG_RATES_MAX   512 // angles kept by the causal filter
+#define DIG_RATES_LEAST 5   // angles that tell a parabola
 
 /// Rates of the three joints at one instant. Zeroed: standing still, known exactly.
 struct dig_rates {
@@ -39,6 +40,11 @@ struct dig_rates_filter {
 /// angle. O(angles in the window); when they do not fit, the window shortens.
 struct dig_rates dig_rates_step(struct dig_rates_filter *filter, int64_t time_ns,
                                 const double joint_rad[DIG_JOINTS], double sigma_rad);
+
+/// Rates at sample `at` of n by the parabola through all, joint_rad[3 * i + joint]. Fewer than 5:
+/// still. O(n).
+struct dig_rates dig_rates_at(size_t at, size_t n, const double time_s[], const double joint_rad[],
+                              double sigma_rad);
 
 /// Rates at each of n samples of a recording, time_s ascending, joint_rad[3 * i + joint]. Where
 /// fewer than 5 samples lie within +-half_s: still. O(n * samples in the window).

@@ -87,8 +87,10 @@ static void add_rate_variance(const struct dig_machine *const  machine,
                               struct variance *const           variance)
 {
     const struct dig_rates *const rates = readings->rates;
-    double                        inertia_kgm2[DIG_JOINTS][DIG_JOINTS];
-    dig_dynamics_inertia_kgm2(machine, front, inertia_kgm2);
+    if (readings->inertia) {
+        dig_balance_add_inertia_variance(machine, front, balance, rates->acceleration_sigma,
+                                         variance->all);
+    }
     for (int k = 0; k < DIG_JOINTS; k++) {
         const double arm_m  = balance->lever[k].arm_m;
         const double rod    = arm_m * rates->velocity_radps[k];
@@ -101,12 +103,7 @@ static void add_rate_variance(const struct dig_machine *const  machine,
                             dig_friction_loss_N(friction, push_N, rod - by_rod));
         }
         for (int p = 0; p < DIG_PARTS; p++) {
-            double by_turn = 0.0;
-            for (int j = 0; j < DIG_JOINTS; j++) {
-                by_turn -= balance->by_moment[p][j] * inertia_kgm2[j][k];
-            }
-            variance->all[p] += pow(by_turn * rates->acceleration_sigma, 2.0) +
-                                pow(balance->by_moment[p][k] * arm_m * rubs_N, 2.0);
+            variance->all[p] += pow(balance->by_moment[p][k] * arm_m * rubs_N, 2.0);
         }
     }
 }
@@ -154,7 +151,7 @@ static void add_variances(const struct dig_machine *const  machine,
 static enum dig_status solve(const struct dig_machine *const    machine,
                              const struct dig_correction *const correction,
                              const struct dig_sample *const     sample,
-                             const struct dig_rates *const rates, const bool with_sigma,
+                             const struct dig_rates *const rates, const unsigned with,
                              struct dig_wrench *const wrench, struct dig_front *const front)
 {
     struct dig_readings   readings;
@@ -162,6 +159,9 @@ static enum dig_status solve(const struct dig_machine *const    machine,
     if (status != DIG_OK) {
         return status;
     }
+    const bool with_sigma = (with & DIG_WITH_SIGMA) != 0;
+    readings.inertia      = (with & DIG_WITH_INERTIA) != 0;
+
     const struct dig_front placed  = dig_front_place(machine, readings.joint_rad);
     struct dig_balance     balance = dig_balance_solve(machine, &readings, &placed);
 
@@ -191,16 +191,16 @@ enum dig_status dig_wrench_solve(const struct dig_machine *const machine,
                                  struct dig_wrench *const wrench, struct dig_front *const front)
 {
     assert(machine != NULL && sample != NULL && wrench != NULL && front != NULL);
-    return solve(machine, NULL, sample, NULL, true, wrench, front);
+    return solve(machine, NULL, sample, NULL, DIG_WITH_SIGMA, wrench, front);
 }
 
 enum dig_status dig_wrench_correct(const struct dig_machine *const    corrected,
                                    const struct dig_correction *const correction,
                                    const struct dig_sample *const     sample,
-                                   const struct dig_rates *const rates, const bool with_sigma,
+                                   const struct dig_rates *const rates, const unsigned with,
                                    struct dig_wrench *const wrench, struct dig_front *const front)
 {
     assert(corrected != NULL && correction != NULL && sample != NULL && rates != NULL);
     assert(wrench != NULL && front != NULL);
-    return solve(corrected, correction, sample, rates, with_sigma, wrench, front);
+    return solve(corrected, correction, sample, rates, with, wrench, front);
 }

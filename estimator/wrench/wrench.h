@@ -40,14 +40,17 @@ DIG_MUST_CHECK enum dig_status dig_wrench_solve(const struct dig_machine *machin
                                                 const struct dig_sample  *sample,
                                                 struct dig_wrench *wrench, struct dig_front *front);
 
-/// The same for a corrected machine, with weight and inertia subtracted: corrected is
-/// dig_correction_machine() of the same correction, which may be zero. The front is placed at the
-/// time of the pressures, delay_s before the sample's angles. sigma includes the rates' noise
-/// through friction and inertia. Without sigmas (0) values and flags are the same to the bit, for a
-/// third of the work.
+/// What dig_wrench_correct() does besides: sigmas, for three times the work, values and flags being
+/// the same to the bit; and the links' inertia subtracted, which needs centred rates.
+enum dig_wrench_with { DIG_WITH_SIGMA = 1, DIG_WITH_INERTIA = 2 };
+
+/// The same for a corrected machine: corrected is dig_correction_machine() of the same correction,
+/// which may be zero. The front is placed at the time of the pressures, delay_s before the sample's
+/// angles. sigma includes the rates' noise through friction and inertia. with: a sum of enum
+/// dig_wrench_with.
 DIG_MUST_CHECK enum dig_status
 dig_wrench_correct(const struct dig_machine *corrected, const struct dig_correction *correction,
-                   const struct dig_sample *sample, const struct dig_rates *rates, bool with_sigma,
+                   const struct dig_sample *sample, const struct dig_rates *rates, unsigned with,
                    struct dig_wrench *wrench, struct dig_front *front);
 
 #endif // DIG_ESTIMATOR_WRENCH_WRENCH_H

@@ -20,8 +20,9 @@ void dig_early_match_clear(struct dig_early_match *const     early,
 
 bool dig_early_match_observe(struct dig_early_match *const     early,
                              const struct dig_curve_set *const set, const double lambda,
-                             const struct dig_config *const config,
-                             struct dig_observation *const  dig)
+                             const struct dig_machine *const machine,
+                             const struct dig_config *const  config,
+                             struct dig_observation *const   dig)
 {
     assert(early != NULL && set != NULL && config != NULL && dig != NULL);
     while (dig_ring_pop(early->estimates, &early->last)) {
@@ -42,13 +43,13 @@ bool dig_early_match_observe(struct dig_early_match *const     early,
     early->next_progress = e->progress + retry_step;
 
     struct dig_observation seen;
-    const enum dig_status  status =
-        dig_live_recording_observe(set, &config->estimator, &early->live, &early->scratch, &seen);
-    early->off_table_trajectory = status == DIG_ENOMATCH &&
+    const enum dig_status  status = dig_live_recording_observe(set, &config->estimator, machine,
+                                                               &early->live, &early->scratch, &seen);
+    early->off_table_trajectory   = status == DIG_ENOMATCH &&
                                           e->progress >= config->match_early_path &&
                                           dig_approach_varies(set, (size_t)e->trajectory)
-                                      ? e->trajectory
-                                      : -1;
+                                        ? e->trajectory
+                                        : -1;
     if (status != DIG_OK || seen.trajectory != e->trajectory ||
         seen.last - seen.first < config->match_early_path) {
         return false;

@@ -2,7 +2,7 @@
 
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/observe_dig.h"
-#include "estimator/track/inertia_error.h"
+#include "estimator/track/inertia.h"
 #include "firmware_host/matching/fit_publish.h"
 #include "firmware_host/matching/fit_reload.h"
 #include "firmware_host/matching/gravel_state.h"
@@ -81,12 +81,15 @@ static enum dig_status match_pool(struct dig_fit *const fit, struct dig_pool *co
     return match_digs(fit, 1, pool->dig, match, refined);
 }
 
-// What is done to a dig as soon as it was observed. False where the table does not go so deep.
-static bool complete(struct dig_fit *const fit, struct dig_observation *const dig)
+// The machine whose inertia a recording holds; NULL: not known.
+static const struct dig_machine *moved_machine(const struct dig_fit *const fit)
 {
-    if (fit->machine != NULL) {
-        dig_inertia_error_add(fit->machine, fit->matcher.lambda, dig);
-    }
+    return fit->basis.machine.corrects ? &fit->basis.machine.machine : fit->machine;
+}
+
+// Tells the depth of an observed dig. False where the table does not go so deep.
+static bool tell_depth(struct dig_fit *const fit, struct dig_observation *const dig)
+{
     return dig_matcher_fit_depth(&fit->matcher, fit->config->estimator.path_limit_m, dig) == DIG_OK;
 }
 
@@ -168,8 +171,9 @@ static void observe_early(struct dig_fit *const fit)
     struct dig_early_match *const     early = fit->early;
     const struct dig_curve_set *const set   = fit->matcher.set;
     struct dig_observation            dig;
-    bool observed = dig_early_match_observe(early, set, fit->matcher.lambda, fit->config, &dig);
-    if (observed && !complete(fit, &dig)) {
+    bool observed = dig_early_match_observe(early, set, fit->matcher.lambda, moved_machine(fit),
+                                            fit->config, &dig);
+    if (observed && !tell_depth(fit, &dig)) {
         early->off_table_trajectory = dig.trajectory;
         observed                    = false;
     }
@@ -282,10 +286,14 @@ static bool take_finished(struct dig_fit *const fit)
     if (!dig_ring_pop(&fit->handoffs->digs, &recording)) {
         return false;
     }
+    const struct dig_machine *const machine = moved_machine(fit);
+    if (machine != NULL) {
+        dig_inertia_take_off(machine, fit->matcher.lambda, &recording->window);
+    }
     struct dig_observation dig;
     if (dig_recorded_dig_observe(fit->matcher.set, &fit->config->estimator, recording, &dig) ==
             DIG_OK &&
-        complete(fit, &dig)) {
+        tell_depth(fit, &dig)) {
         dig_fit_take(fit, &dig);
     } else {
         count_unobserved(fit, recording);

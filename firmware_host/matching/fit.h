@@ -43,7 +43,7 @@ struct dig_fit {
     // fixed at start
     const char                      *config_path; // read again on a reload
     const struct dig_config         *config;
-    const struct dig_machine        *machine; // NULL: forces keep their sensors' sigma
+    const struct dig_machine        *machine; // NULL: no inertia is taken off
     struct dig_gravel_track_settings track_settings;
     struct dig_handoffs             *handoffs;
     const atomic_bool               *stop;

@@ -31,7 +31,9 @@ static void expect_load(const struct dig_machine *const file, const struct dig_c
     struct dig_wrench        w;
     struct dig_front         front;
     assert_int_equal(apply(file, *c), DIG_OK);
-    assert_int_equal(dig_wrench_correct(&corrected, c, sample, rates, true, &w, &front), DIG_OK);
+    assert_int_equal(dig_wrench_correct(&corrected, c, sample, rates,
+                                        DIG_WITH_SIGMA | DIG_WITH_INERTIA, &w, &front),
+                     DIG_OK);
     assert_true(w.moment_valid && w.force_valid);
     assert_close(w.My_Nm, load.M_Nm, tolerance);
     assert_close(w.Fx_N, -load.FX_N, tolerance);
@@ -60,7 +62,8 @@ TEST(nothing_corrected_at_rest_is_the_plain_wrench)
     struct dig_wrench           plain, corrected;
     struct dig_front            front;
     assert_int_equal(dig_wrench_solve(&machine, &sample, &plain, &front), DIG_OK);
-    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still, true, &corrected, &front),
+    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still,
+                                        DIG_WITH_SIGMA | DIG_WITH_INERTIA, &corrected, &front),
                      DIG_OK);
     assert_close(corrected.My_Nm, plain.My_Nm, 1e-6);
     assert_close(corrected.Fx_N, plain.Fx_N, 1e-6);
@@ -143,7 +146,8 @@ TEST(moved_pins_leave_the_stops_where_they_are)
         arm->min_length_m                  = lever.length_m - clear_m;
         arm->max_length_m                  = lever.length_m + clear_m;
         const struct dig_machine corrected = dig_correction_machine(&machine, &moved);
-        assert_int_equal(dig_wrench_correct(&corrected, &moved, &sample, &still, true, &w, &front),
+        assert_int_equal(dig_wrench_correct(&corrected, &moved, &sample, &still,
+                                            DIG_WITH_SIGMA | DIG_WITH_INERTIA, &w, &front),
                          DIG_OK);
         assert_true(w.moment_valid);
         assert_int_equal(w.force_valid, !at_stop);
@@ -184,9 +188,11 @@ TEST(noise_of_the_rates_widens_sigma)
     const struct dig_rates      noisy   = { .acceleration_sigma = 0.5 };
     struct dig_wrench           calm, shaken;
     struct dig_front            front;
-    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still, true, &calm, &front),
+    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &still,
+                                        DIG_WITH_SIGMA | DIG_WITH_INERTIA, &calm, &front),
                      DIG_OK);
-    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &noisy, true, &shaken, &front),
+    assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &noisy,
+                                        DIG_WITH_SIGMA | DIG_WITH_INERTIA, &shaken, &front),
                      DIG_OK);
     // All joints' accelerations turn the bucket: each adds its part.
     uint64_t seed = 3;
@@ -197,7 +203,8 @@ TEST(noise_of_the_rates_widens_sigma)
             r.acceleration_radps2[j] = 0.5 * model_normal(&seed);
         }
         struct dig_wrench w;
-        assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &r, true, &w, &front),
+        assert_int_equal(dig_wrench_correct(&machine, &none, &sample, &r,
+                                            DIG_WITH_SIGMA | DIG_WITH_INERTIA, &w, &front),
                          DIG_OK);
         sum2 += pow(w.My_Nm - calm.My_Nm, 2.0);
     }
@@ -227,13 +234,16 @@ TEST(without_sigmas_the_same_is_told)
         sample.value[DIG_SIGNAL_ARM_rad]    = -2.8 + 3.0 * (double)(i / STEPS) / STEPS;
         sample.value[DIG_SIGNAL_BUCKET_rad] = -3.0 + 6.0 * (double)(i % STEPS) / STEPS;
         rough.angle_sigma_rad               = 1e-6;
-        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, true, &sharp, &front[0]),
+        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates,
+                                            DIG_WITH_SIGMA | DIG_WITH_INERTIA, &sharp, &front[0]),
                          DIG_OK);
         rough.angle_sigma_rad = 0.1;
-        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates, true, &told[0], &front[0]),
+        assert_int_equal(dig_wrench_correct(&rough, &c, &sample, &rates,
+                                            DIG_WITH_SIGMA | DIG_WITH_INERTIA, &told[0], &front[0]),
                          DIG_OK);
         assert_int_equal(
-            dig_wrench_correct(&rough, &c, &sample, &rates, false, &told[1], &front[1]), DIG_OK);
+            dig_wrench_correct(&rough, &c, &sample, &rates, DIG_WITH_INERTIA, &told[1], &front[1]),
+            DIG_OK);
         assert_memory_equal(&front[0], &front[1], sizeof front[0]);
         assert_int_equal(told[0].moment_valid, told[1].moment_valid);
         assert_int_equal(told[0].force_valid, told[1].force_valid);

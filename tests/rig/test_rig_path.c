@@ -66,7 +66,7 @@ static size_t first_loaded(const struct dig_rig_path *const path)
 TEST(air_lies_before_contact_and_after_the_dump)
 {
     struct dig_rig_path path  = build((struct dig_rig_path_options){
-         .lambda = 10.0, .tooth_m = 0.9, .air = true, .blend = true });
+         .lambda = 10.0, .tooth_m = 0.9, .air = true, .air_pace = 1.0, .blend = true });
     const size_t        first = first_loaded(&path);
     assert_true((double)first * DIG_RIG_STEP_s >= 2.0);
 
@@ -99,7 +99,7 @@ TEST(air_lies_before_contact_and_after_the_dump)
 TEST(load_fades_without_a_jump_while_the_bucket_dumps)
 {
     struct dig_rig_path path  = build((struct dig_rig_path_options){
-         .lambda = 10.0, .tooth_m = 0.9, .air = true, .blend = true });
+         .lambda = 10.0, .tooth_m = 0.9, .air = true, .air_pace = 1.0, .blend = true });
     const size_t        first = first_loaded(&path);
     for (size_t i = first + 10000; i < path.frames; i++) {
         const double step_N = fabs(path.frame[i].soil.FX_N - path.frame[i - 1].soil.FX_N);
@@ -161,9 +161,11 @@ TEST(two_digs_lie_in_one_bed_with_air_between)
         moved[i].pin_x_m += 0.03;
     }
     const struct dig_recording        both[]  = { one, { .rows = ROWS, .row = moved } };
-    const struct dig_rig_path_options options = { .lambda = 10.0, .tooth_m = 0.9, .air = true };
-    struct dig_rig_path               path;
-    struct dig_error                  error = { "" };
+    const struct dig_rig_path_options options = {
+        .lambda = 10.0, .tooth_m = 0.9, .air = true, .air_pace = 1.0
+    };
+    struct dig_rig_path path;
+    struct dig_error    error = { "" };
     assert_int_equal(dig_rig_path_build(&options, 2, both, &path, &error), DIG_OK);
 
     // The second contact is where the load rises from nothing for the second time.
@@ -190,13 +192,15 @@ TEST(bad_requests_are_refused_and_write_nothing)
 {
     const struct dig_recording        good[2] = { cornered(), cornered() };
     const struct dig_recording        shorty  = { .rows = 1, .row = rows };
-    const struct dig_rig_path_options air     = { .lambda = 10.0, .tooth_m = 0.9, .air = true };
-    const struct dig_rig_path_options no_air  = { .lambda = 10.0, .tooth_m = 0.9 };
-    const struct dig_rig_path_options bad[]   = {
-          { .lambda = 0.0, .tooth_m = 0.9 },
-          { .lambda = -1.0, .tooth_m = 0.9 },
-          { .lambda = NAN, .tooth_m = 0.9 },
-          { .lambda = 10.0, .tooth_m = 0.0 },
+    const struct dig_rig_path_options air     = {
+            .lambda = 10.0, .tooth_m = 0.9, .air = true, .air_pace = 1.0
+    };
+    const struct dig_rig_path_options no_air = { .lambda = 10.0, .tooth_m = 0.9 };
+    const struct dig_rig_path_options bad[]  = {
+         { .lambda = 0.0, .tooth_m = 0.9 },
+         { .lambda = -1.0, .tooth_m = 0.9 },
+         { .lambda = NAN, .tooth_m = 0.9 },
+         { .lambda = 10.0, .tooth_m = 0.0 },
     };
     struct dig_rig_path path  = { .frames = 42 };
     struct dig_error    error = { "" };

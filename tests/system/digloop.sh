@@ -86,6 +86,15 @@ check "a prediction is as wrong against the machine recording as against the for
     awk -v a="$(sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p' "$work/by_force.json")" \
         -v b="$(sed -nE 's/.*"error": ([0-9.e-]+).*/\1/p' "$work/by_machine.json")" \
         'BEGIN { exit !(a > 0 && b > 0 && (a - b) ^ 2 < 0.02 ^ 2) }'
+# A boom that comes down briskly before a dig in the open: what its inertia reads as is no ground.
+open_dig=tests/data/liggghts_product/mu0.4_mur0.6_rho3000_bucket0.4_seed1__simpleA.csv
+brisk_depth() { # PACE
+    "$BIN/digrig" record "$open_dig" --machine "$machine" --scene config/scenes/product.yaml --air-pace "$1" -q -o "$work/brisk.csv" &&
+        "$BIN/digloop" identify tables/product.sqlite "$work/brisk.csv" --machine "$machine" --json |
+        sed -nE 's/.*"depth": ([0-9.]+).*/\1/p' | head -n 1
+}
+check "a boom lowered nine times as briskly leaves a dig as deep" awk -v a="$(brisk_depth 1)" -v b="$(brisk_depth 3)" \
+    'BEGIN { exit !(a > .9 && (a - b) ^ 2 < .06 ^ 2) }'
 # A machine whose bucket is 250 kg heavier than its file says, and a model that says so.
 heavier 250 "$work/heavy.yaml"
 model() { # SCENE_HASH

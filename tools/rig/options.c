@@ -122,6 +122,10 @@ static const struct dig_option known[] = {
     { "quasi-static", NULL, NULL, "leave the inertia of the links out", INTO(track.quasi_static) },
     { "no-blend", NULL, " record serve ", "keep the velocity jumps of the recording",
       INTO(track.blend), .clears = true },
+    { "air-pace", "F", " record serve ",
+      "how briskly the bucket is moved before and after a dig; 1 (default): at most 0.7 m/s2, 2: "
+      "four times that",
+      INTO(track.air_pace), 0.1, 4.0 },
     { "no-air", NULL, " record serve ", "the dig alone, without motion before and after",
       INTO(track.air), .clears = true },
 };

@@ -16,7 +16,7 @@ static const double swing_rad     = 0.35;
 static const double dump_phi_rad  = -70.0 * DIG_RAD_PER_DEG;
 static const double dump_more_rad = 0.17; // at least, however open the bucket is already
 static const double hold_s        = 0.5;
-// No faster than this, so that in the air the links' inertia stays small beside their weight.
+// No faster than this at the pace of 1, so that the links' inertia stays small beside their weight.
 static const double least_move_s   = 1.2;
 static const double most_mps2      = 0.7;
 static const double most_radps2    = 1.0;
@@ -58,12 +58,14 @@ static double left(const double s)
 
 enum load { LOAD_HELD, LOAD_FADING };
 
-static double duration_s(const struct state *const from, const struct state *const to)
+static double duration_s(const double pace, const struct state *const from,
+                         const struct state *const to)
 {
     const double way_m    = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]);
     const double turn_rad = fabs(to->at[2] - from->at[2]);
     return fmax(least_move_s, fmax(sqrt(quintic_factor * way_m / most_mps2),
-                                   sqrt(quintic_factor * turn_rad / most_radps2)));
+                                   sqrt(quintic_factor * turn_rad / most_radps2))) /
+           pace;
 }
 
 // Moves from `from` to `to` in about seconds: the polynomial of degree five that has both rates and
@@ -101,7 +103,7 @@ static bool move(struct dig_rig_path *const path, const struct state *const from
                  const struct state *const to, const struct dig_rig_wrench soil,
                  const enum load load)
 {
-    return move_in(path, from, to, duration_s(from, to), soil, load);
+    return move_in(path, from, to, duration_s(path->air_pace, from, to), soil, load);
 }
 
 // The same with an empty bucket.
@@ -287,6 +289,7 @@ enum dig_status dig_rig_path_build(const struct dig_rig_path_options *const opti
     }
 
     struct dig_rig_path made = {
+        .air_pace        = options->air_pace,
         .contact_phi_rad = -0.5 * DIG_PI - recording[0].row[0].theta_deg * DIG_RAD_PER_DEG,
     };
     struct state now = rest(0.0, 0.0, 0.0);

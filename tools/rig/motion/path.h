@@ -33,23 +33,25 @@ struct dig_rig_frame {
 struct dig_rig_path {
     size_t                frames;
     struct dig_rig_frame *frame;
+    double                air_pace;        // as it was asked for
     double                contact_phi_rad; // bucket attitude at the first dig's first row
     double                blend_off_m;     // farthest the blend moved the pin …
     double                blend_off_rad;   // … and turned the bucket
 };
 
 struct dig_rig_path_options {
-    double lambda;  // > 0
-    double tooth_m; // the machine's bucket, pin to tooth
-    bool   air;     // false: the dig alone; one recording only
-    bool   blend;   // false: velocity jumps stay, and so do the accelerations they cause
+    double lambda;   // > 0
+    double tooth_m;  // the machine's bucket, pin to tooth
+    bool   air;      // false: the dig alone; one recording only
+    bool   blend;    // false: velocity jumps stay, and so do the accelerations they cause
+    double air_pace; // > 0 with air: 1 is at most 0.7 m/s2, and accelerations grow as its square
 };
 
-/// At least 2 s of air lie before each contact and after each dump. Velocity jumps are blended by a
-/// symmetric smoothing (three moving averages of a third of DIG_RIG_BLEND_s each), which leaves
-/// straight, even motion untouched and cuts a corner of dv m/s by less than DIG_RIG_BLEND_s / 12 *
-/// dv. Forces are not smoothed. DIG_EINVAL for a lambda that is not positive, no recording, or more
-/// than one without air; DIG_ENOMEM.
+/// At least 2 s of air at the pace of 1 lie before each contact and after each dump. Velocity jumps
+/// are blended by a symmetric smoothing (three moving averages of a third of DIG_RIG_BLEND_s each),
+/// which leaves straight, even motion untouched and cuts a corner of dv m/s by less than
+/// DIG_RIG_BLEND_s / 12 * dv. Forces are not smoothed. DIG_EINVAL for a lambda that is not
+/// positive, no recording, or more than one without air; DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status dig_rig_path_build(const struct dig_rig_path_options *options,
                                                   size_t                             recordings,
                                                   const struct dig_recording         recording[],

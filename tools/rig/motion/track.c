@@ -16,6 +16,7 @@ struct dig_rig_track_options dig_rig_track_options_default(void)
         .scene_tooth_m = 0.09,
         .rate_Hz       = 200.0,
         .air           = true,
+        .air_pace      = 1.0,
         .blend         = true,
     };
 }
@@ -195,10 +196,11 @@ enum dig_status dig_rig_track_build(const struct dig_machine *const           ma
     }
     const double                      tooth_m      = machine->link[DIG_JOINT_BUCKET].length_m;
     const struct dig_rig_path_options path_options = {
-        .lambda  = tooth_m / options->scene_tooth_m,
-        .tooth_m = tooth_m,
-        .air     = options->air,
-        .blend   = options->blend,
+        .lambda   = tooth_m / options->scene_tooth_m,
+        .tooth_m  = tooth_m,
+        .air      = options->air,
+        .air_pace = options->air_pace,
+        .blend    = options->blend,
     };
     struct dig_rig_path path;
     status = dig_rig_path_build(&path_options, recordings, recording, &path, error);

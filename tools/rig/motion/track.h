@@ -36,6 +36,7 @@ struct dig_rig_track_options {
     double scene_tooth_m; // of the recordings' bucket, pin to tooth
     double rate_Hz;       // of the rows; a divisor of 1000
     bool   air;
+    double air_pace; // tools/rig/motion/path.h
     bool   blend;
     bool   quasi_static; // leave the inertia of the links out
     bool   placed;       // start at pin_X_m, pin_Z_m instead of searching
