@@ -60,6 +60,27 @@ TEST(what_is_not_there_predicts_nothing)
     assert_true(sum < 0.0);
 }
 
+// Two digs, of which one has the moment alone: adhesion is not in it, so that any magnitude fits it
+// and the other dig is predicted by chance. Over a dozen campaigns what is there must still count
+// for itself; predicted as if the moment told all, it counts against.
+TEST(others_that_tell_nothing_of_an_effect_do_not_count_against_it)
+{
+    static const enum dig_effect_id adhesion = DIG_EFFECT_ADHESION;
+    static const double             size     = 0.5;
+    double                          sum      = 0.0;
+    for (uint64_t campaign = 1; campaign <= 12; campaign++) {
+        uint64_t seed = 1000 * campaign;
+        measured[0]   = made_dig(&gravel, MADE_SIMPLE_A, 1, &adhesion, &size, &seed);
+        measured[1]   = made_dig(&gravel, MADE_ACTUAL, 1, &adhesion, &size, &seed);
+        measured[1].measured[DIG_CHANNEL_FX_N] = false;
+        measured[1].measured[DIG_CHANNEL_FZ_N] = false;
+        batch_digs(2, measured, &gravel, &batch);
+        sum += gain_of(adhesion);
+    }
+    print_message("gain of twelve campaigns %.1f\n", sum);
+    assert_true(sum > 20.0);
+}
+
 // A trend needs four digs: of four none can be left out.
 TEST(what_cannot_be_fitted_to_the_others_counts_nothing)
 {
