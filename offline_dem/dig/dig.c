@@ -50,13 +50,13 @@ static double carried_kg(const struct run *const d)
     return sum_kg;
 }
 
-// Means over the steps first + 1 … first + window.
+// Means over the steps first + 1 … first + window. The wrench before them has been taken.
 static enum dig_status record_window(struct run *const d, const size_t first, const size_t window,
                                      struct dig_force_row *const row)
 {
     const double      dt_s   = d->world.dt_s;
     struct dig_wrench sum    = { 0 };
-    enum dig_status   status = dig_world_take_wrench(&d->world, &sum);
+    enum dig_status   status = DIG_OK;
     for (size_t s = 1; s <= window && status == DIG_OK; s++) {
         place_tool(d, (double)(first + s) * dt_s);
         status = dig_world_step(&d->world);
@@ -97,7 +97,9 @@ static enum dig_status run(struct run *const d, struct dig_recording *const reco
     }
     // The forces before the first step belong to no row: they give the half kick.
     place_tool(d, 0.0);
-    enum dig_status status = dig_world_step(&d->world);
+    enum dig_status   status = dig_world_step(&d->world);
+    struct dig_wrench before;
+    status = status == DIG_OK ? dig_world_take_wrench(&d->world, &before) : status;
     for (size_t r = 0; r < rows && status == DIG_OK; r++) {
         if (d->vtk_dir != NULL && r % PICTURE_WINDOWS == 0) {
             status = dig_world_sync_motion(&d->world);

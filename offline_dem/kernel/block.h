@@ -1,6 +1,7 @@
 // The law on a block of contacts. In single precision the block takes two stages, the normals of
 // all contacts before the forces of the first: while a root is worked out the processor goes on
-// with other contacts. Inlined into the variants of kernel.c.
+// with other contacts. A wall's contacts have their normals from it. Inlined into the variants of
+// kernel.c.
 
 #ifndef DIG_OFFLINE_DEM_KERNEL_BLOCK_H
 #define DIG_OFFLINE_DEM_KERNEL_BLOCK_H
@@ -105,12 +106,17 @@ INLINED void find_normals(const bool periodic, const double reach_m, const doubl
     }
 }
 
-INLINED void find_forces(const struct dig_law_single law, const float dt_s, const size_t padded,
-                         float *const               histories[DIG_HISTORY_VALUES],
-                         struct block_single *const block)
+// From block->normal and block->in.
+INLINED void find_forces(const struct dig_law *const wide, const double wide_dt_s,
+                         const struct single_contacts *const contacts,
+                         struct block_single *const          block)
 {
-    float(*const in)[DIG_BLOCK]  = block->in;
-    float(*const out)[DIG_BLOCK] = block->out;
+    const struct dig_law_single law       = dig_law_to_single(wide);
+    const float                 dt_s      = (float)wide_dt_s;
+    const size_t                padded    = round_up(contacts->count, LANES_SINGLE);
+    float *const *const         histories = contacts->history;
+    float(*const in)[DIG_BLOCK]           = block->in;
+    float(*const out)[DIG_BLOCK]          = block->out;
 #pragma omp simd simdlen(16)
     for (size_t c = 0; c < padded; c++) {
         const struct dig_contact_normal_single n = { block->normal[0][c], block->normal[1][c],
@@ -140,12 +146,11 @@ INLINED void find_forces(const struct dig_law_single law, const float dt_s, cons
     }
 }
 
-INLINED void block_single_body(const struct dig_law *const law, const double dt_s,
-                               const double period_m, const struct single_contacts *const contacts,
-                               struct block_single *const block)
+INLINED void find_pair_normals(const struct dig_law *const law, const double period_m,
+                               const size_t count, struct block_single *const block)
 {
-    const size_t padded = round_up(contacts->count, LANES_SINGLE);
-    for (size_t c = contacts->count; c < padded; c++) {
+    const size_t padded = round_up(count, LANES_SINGLE);
+    for (size_t c = count; c < padded; c++) {
         for (int k = 0; k < 3; k++) {
             block->d_m[k][c] = FAR_m;
         }
@@ -155,7 +160,6 @@ INLINED void block_single_body(const struct dig_law *const law, const double dt_
     } else {
         find_normals(false, law->reach_m, 0.0, padded, block);
     }
-    find_forces(dig_law_to_single(law), (float)dt_s, padded, contacts->history, block);
 }
 
 #endif // DIG_OFFLINE_DEM_KERNEL_BLOCK_H

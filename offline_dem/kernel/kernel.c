@@ -2,6 +2,7 @@
 
 #include "offline_dem/kernel/advance.h"
 #include "offline_dem/kernel/block.h"
+#include "offline_dem/kernel/near_search.h"
 #include "offline_dem/kernel/rows.h"
 #include "offline_dem/kernel/wall_rows.h"
 #include "offline_dem/law/period.h"
@@ -91,7 +92,8 @@ INLINED void pairs_single_body(const struct dig_law *const law, const double dt_
     for (size_t first = dig_contacts_slab_first(list, slab); first < end; first += DIG_BLOCK) {
         begin_block(list, first, block_count(first, end), &contacts);
         gather_single(&contacts, grains->single_motion, &block);
-        block_single_body(law, dt_s, period_m, &contacts, &block);
+        find_pair_normals(law, period_m, contacts.count, &block);
+        find_forces(law, dt_s, &contacts, &block);
         scatter_single(&contacts, &block, load);
         end_block(&contacts, first, list);
     }
@@ -127,7 +129,7 @@ INLINED void walls_single_body(const struct dig_law *const law, const double dt_
     for (size_t first = dig_contacts_slab_first(list, slab); first < end; first += DIG_BLOCK) {
         begin_block(list, first, block_count(first, end), &contacts);
         gather_walls_single(&contacts, wall, law->reach_m, grains->single_motion, &block);
-        block_single_body(law, dt_s, 0.0, &contacts, &block);
+        find_forces(law, dt_s, &contacts, &block);
         scatter_walls_single(&contacts, &block, load, sum_N);
         end_block(&contacts, first, list);
     }
@@ -181,6 +183,12 @@ INLINED void walls_single_body(const struct dig_law *const law, const double dt_
         return grains->in_single                                                                   \
                    ? advance_body(true, gravity_mps2, kick_s, dt_s, reference_m, slab, grains)     \
                    : advance_body(false, gravity_mps2, kick_s, dt_s, reference_m, slab, grains);   \
+    }                                                                                              \
+    attribute static size_t near_##suffix(                                                         \
+        const struct dig_near_query *const query, const struct dig_near_grains *const in,          \
+        const size_t rows, const struct dig_near_row row[], uint32_t other[])                      \
+    {                                                                                              \
+        return near_body(query, in, rows, row, other);                                             \
     }
 
 // NOLINTEND(bugprone-macro-parentheses)
@@ -235,4 +243,11 @@ bool dig_kernel_advance(const enum dig_isa isa, const double gravity_mps2[3], co
                         struct dig_grains *const grains)
 {
     return CALL(isa, advance, gravity_mps2, kick_s, dt_s, reference_m, slab, grains);
+}
+
+size_t dig_kernel_near(const enum dig_isa isa, const struct dig_near_query *const query,
+                       const struct dig_near_grains *const in, const size_t rows,
+                       const struct dig_near_row row[], uint32_t other[])
+{
+    return CALL(isa, near, query, in, rows, row, other);
 }

@@ -55,4 +55,32 @@ void dig_kernel_walls(enum dig_isa isa, const struct dig_law *law, double dt_s,
 bool dig_kernel_advance(enum dig_isa isa, const double gravity_mps2[3], double kick_s, double dt_s,
                         const double reference_m[][4], size_t slab, struct dig_grains *grains);
 
+#define DIG_NEAR_PADDING 8
+
+/// Grains in the order of their cells. The arrays go on for DIG_NEAR_PADDING entries of any value.
+struct dig_near_grains {
+    double   *x_m, *y_m, *z_m, *radius_m, *margin_m;
+    uint32_t *grain;
+};
+
+/// A grain, or its image beyond a periodic side, around which others are searched for.
+struct dig_near_query {
+    double   x_m[3];
+    double   own_m; // radius and margin
+    double   margin_m;
+    double   half_m; // of the period: farther images in y are not the nearest
+    uint32_t grain;
+};
+
+/// Grains first … end - 1 of a struct dig_near_grains.
+struct dig_near_row {
+    size_t first, end;
+};
+
+/// Grains in these rows that are listed under the query's (neighbour.h), clumps apart. Returns how
+/// many; `other` has room for all of the rows.
+size_t dig_kernel_near(enum dig_isa isa, const struct dig_near_query *query,
+                       const struct dig_near_grains *in, size_t rows,
+                       const struct dig_near_row row[], uint32_t other[]);
+
 #endif // DIG_OFFLINE_DEM_KERNEL_KERNEL_H

@@ -2,6 +2,7 @@
 
 #include "offline_dem/kernel/cell_grid.h"
 #include "offline_dem/kernel/crew.h"
+#include "offline_dem/kernel/kernel.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -37,117 +38,43 @@ static enum dig_status make_room(struct finds *const finds, const size_t need)
     return DIG_OK;
 }
 
-// A grain as the search reads it, stored cell by cell.
-struct cell_grain {
-    double   x_m[3], radius_m, margin_m;
-    uint32_t grain, clump;
-};
-
-static struct cell_grain make_cell_grain(const struct dig_grains *const grains,
-                                         const double margin_m[], const uint32_t i)
-{
-    const double *const x = grains->motion[i].x_m;
-    return (struct cell_grain){
-        .x_m      = { x[0], x[1], x[2] },
-        .radius_m = grains->type[grains->type_of[i]].radius_m,
-        .margin_m = margin_m[i],
-        .grain    = i,
-        .clump    = grains->clump == NULL ? 0 : grains->clump[i],
-    };
-}
+// Rows of cells that are searched at once: as a rule nine.
+#define ROWS 32
 
 // The search around one grain, or around its image beyond a periodic side.
 struct query {
-    const struct cell_grain *all; // in the order of the grid's members
-    double                   radius_max_m;
-    double                   half_m; // of the period: farther images in y are not the nearest
-    struct cell_grain        own;
-    double                   x_m[3]; // of the grain, or of its image
+    struct dig_near_query near;
+    double                far_m; // no pair of the grain's is longer
 };
 
-// Whether a near grain is listed under the query's. The grain with the larger margin searches far
-// enough to find the pair.
-static bool is_listed(const struct query *const q, const struct cell_grain *const other,
-                      const double dy_m)
-{
-    const struct cell_grain *const own      = &q->own;
-    const bool                     is_first = other->margin_m < own->margin_m ||
-                          (!(other->margin_m > own->margin_m) && other->grain > own->grain);
-    const bool apart = own->clump == 0 || own->clump != other->clump;
-    return is_first && apart && dy_m >= -q->half_m && dy_m < q->half_m;
-}
-
 // Whether so far around the query nothing of the grid lies, as around most images.
-static bool is_beside(const struct query *const q, const struct dig_cell_grid *const g,
-                      const double far_m)
+static bool is_beside(const struct query *const q, const struct dig_cell_grid *const g)
 {
-    return q->x_m[1] + far_m < g->low_m[1] ||
-           q->x_m[1] - far_m > g->low_m[1] + (double)g->count[1] * g->cell_m;
+    return q->near.x_m[1] + q->far_m < g->low_m[1] ||
+           q->near.x_m[1] - q->far_m > g->low_m[1] + (double)g->count[1] * g->cell_m;
 }
 
-static size_t farther(const size_t reach, const size_t i, const size_t j)
+// Leaves out those of the grain's own clump.
+static size_t drop_own_clump(const uint32_t clump[], const uint32_t i, const size_t count,
+                             uint32_t other[])
 {
-    const size_t apart = i < j ? j - i : i - j;
-    return apart > reach ? apart : reach;
+    size_t kept = 0;
+    for (size_t k = 0; k < count; k++) {
+        other[kept] = other[k];
+        kept += clump[i] == 0 || clump[i] != clump[other[k]];
+    }
+    return kept;
 }
 
-// Appends the pairs of the query's grain.
-static enum dig_status search(const struct query *const q, const struct dig_cell_grid *const g,
-                              struct finds *const finds)
+static size_t farthest(const size_t reach, const size_t i, const size_t count,
+                       const uint32_t other[])
 {
-    const double *const x     = q->x_m;
-    const double        own_m = q->own.radius_m + q->own.margin_m;
-    const double        far_m = q->own.radius_m + q->radius_max_m + 2.0 * q->own.margin_m;
-    size_t              count = finds->used;
-    size_t              reach = finds->reach;
-    ptrdiff_t           low[3];
-    ptrdiff_t           high[3];
-    if (is_beside(q, g, far_m)) {
-        return DIG_OK;
+    size_t most = reach;
+    for (size_t k = 0; k < count; k++) {
+        const size_t apart = i < other[k] ? other[k] - i : i - other[k];
+        most               = apart > most ? apart : most;
     }
-    for (int a = 0; a < 3; a++) {
-        low[a]  = dig_cell_grid_along(g, a, x[a] - far_m);
-        high[a] = dig_cell_grid_along(g, a, x[a] + far_m);
-    }
-    const int a = g->axis[0];
-    const int b = g->axis[1];
-    const int c = g->axis[2];
-    for (ptrdiff_t ic = low[c]; ic <= high[c]; ic++) {
-        for (ptrdiff_t ib = low[b]; ib <= high[b]; ib++) {
-            const size_t row   = (size_t)(g->count[a] * (ib + g->count[b] * ic));
-            const size_t first = g->start[row + (size_t)low[a]];
-            const size_t last  = g->start[row + (size_t)high[a] + 1];
-            if (make_room(finds, count + (last - first)) != DIG_OK) {
-                return DIG_ENOMEM;
-            }
-            for (size_t k = first; k < last; k++) {
-                const struct cell_grain *const y = &q->all[k];
-                const double d[3]    = { x[0] - y->x_m[0], x[1] - y->x_m[1], x[2] - y->x_m[2] };
-                const double reach_m = own_m + y->radius_m + y->margin_m;
-                if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m &&
-                    is_listed(q, y, d[1])) {
-                    finds->other[count++] = y->grain;
-                    reach                 = farther(reach, q->own.grain, y->grain);
-                }
-            }
-        }
-    }
-    finds->used  = count;
-    finds->reach = reach;
-    return DIG_OK;
-}
-
-// Searches around the grain, and around its images where y is periodic: most are out of reach.
-static enum dig_status search_images(struct query *const q, const struct dig_cell_grid *const g,
-                                     const double period_m, struct finds *const finds)
-{
-    memcpy(q->x_m, q->own.x_m, sizeof q->x_m);
-    enum dig_status status = search(q, g, finds);
-    for (int side = -1; period_m > 0.0 && side <= 1 && status == DIG_OK; side += 2) {
-        q->x_m[1] = q->own.x_m[1] + side * period_m;
-        status    = search(q, g, finds);
-    }
-    return status;
+    return most;
 }
 
 // A search that a crew shares. Each member finds the pairs of its grains.
@@ -155,12 +82,30 @@ struct shared_search {
     const struct dig_grains *grains;
     const double            *margin_m;
     double                   period_m, radius_max_m;
+    enum dig_isa             isa;
     struct dig_cell_grid     grid;
-    struct cell_grain       *cell_grain; // [n] in the order of the grid's members
+    struct dig_near_grains   in_cells; // [n] in the order of the grid's members
     struct dig_crew         *crew;
     struct finds            *finds; // [members]
     struct dig_neighbours   *list;
 };
+
+// The arrays of doubles are one piece of memory.
+static enum dig_status make_in_cells(const size_t n, struct dig_near_grains *const in)
+{
+    const size_t  room = n + DIG_NEAR_PADDING;
+    double *const x_m  = calloc(5 * room, sizeof *x_m);
+    in->x_m            = x_m;
+    in->grain          = calloc(room, sizeof *in->grain);
+    if (x_m == NULL || in->grain == NULL) {
+        return DIG_ENOMEM;
+    }
+    in->y_m      = x_m + room;
+    in->z_m      = x_m + 2 * room;
+    in->radius_m = x_m + 3 * room;
+    in->margin_m = x_m + 4 * room;
+    return DIG_OK;
+}
 
 static void look_at_grains(void *const context, const size_t member)
 {
@@ -181,10 +126,97 @@ static void look_at_grains(void *const context, const size_t member)
 
 static void order_by_cells(void *const context, const size_t first, const size_t end)
 {
-    const struct shared_search *const s = context;
+    const struct shared_search *const   s  = context;
+    const struct dig_near_grains *const in = &s->in_cells;
     for (size_t k = first; k < end; k++) {
-        s->cell_grain[k] = make_cell_grain(s->grains, s->margin_m, s->grid.member[k]);
+        const uint32_t      i = s->grid.member[k];
+        const double *const x = s->grains->motion[i].x_m;
+        in->x_m[k]            = x[0];
+        in->y_m[k]            = x[1];
+        in->z_m[k]            = x[2];
+        in->radius_m[k]       = s->grains->type[s->grains->type_of[i]].radius_m;
+        in->margin_m[k]       = s->margin_m[i];
+        in->grain[k]          = i;
     }
+}
+
+// Appends the pairs of the query's grain in these rows, which hold so many grains.
+static enum dig_status search_rows(const struct shared_search *const s, const struct query *const q,
+                                   const size_t rows, const struct dig_near_row row[],
+                                   const size_t grains, struct finds *const finds)
+{
+    if (make_room(finds, finds->used + grains) != DIG_OK) {
+        return DIG_ENOMEM;
+    }
+    uint32_t *const other = finds->other + finds->used;
+    const uint32_t  i     = q->near.grain;
+    size_t          count = dig_kernel_near(s->isa, &q->near, &s->in_cells, rows, row, other);
+    if (s->grains->clump != NULL) {
+        count = drop_own_clump(s->grains->clump, i, count, other);
+    }
+    finds->reach = farthest(finds->reach, i, count, other);
+    finds->used += count;
+    return DIG_OK;
+}
+
+// Appends the pairs of the query's grain.
+static enum dig_status search(const struct shared_search *const s, const struct query *const q,
+                              struct finds *const finds)
+{
+    const struct dig_cell_grid *const g = &s->grid;
+    ptrdiff_t                         low[3];
+    ptrdiff_t                         high[3];
+    if (is_beside(q, g)) {
+        return DIG_OK;
+    }
+    for (int a = 0; a < 3; a++) {
+        low[a]  = dig_cell_grid_along(g, a, q->near.x_m[a] - q->far_m);
+        high[a] = dig_cell_grid_along(g, a, q->near.x_m[a] + q->far_m);
+    }
+    const int           a = g->axis[0];
+    const int           b = g->axis[1];
+    const int           c = g->axis[2];
+    struct dig_near_row row[ROWS];
+    size_t              rows   = 0;
+    size_t              grains = 0;
+    enum dig_status     status = DIG_OK;
+    for (ptrdiff_t ic = low[c]; ic <= high[c] && status == DIG_OK; ic++) {
+        for (ptrdiff_t ib = low[b]; ib <= high[b] && status == DIG_OK; ib++) {
+            const size_t first = (size_t)(g->count[a] * (ib + g->count[b] * ic));
+            row[rows].first    = g->start[first + (size_t)low[a]];
+            row[rows].end      = g->start[first + (size_t)high[a] + 1];
+            grains += row[rows].end - row[rows].first;
+            if (++rows == ROWS) {
+                status = search_rows(s, q, rows, row, grains, finds);
+                rows   = 0;
+                grains = 0;
+            }
+        }
+    }
+    return status == DIG_OK ? search_rows(s, q, rows, row, grains, finds) : status;
+}
+
+// Searches around the grain, and around its images where y is periodic: most are out of reach.
+static enum dig_status search_images(const struct shared_search *const s, const uint32_t i,
+                                     struct finds *const finds)
+{
+    const double *const x        = s->grains->motion[i].x_m;
+    const double        radius_m = s->grains->type[s->grains->type_of[i]].radius_m;
+    const double        margin_m = s->margin_m[i];
+    struct query        q        = {
+                      .near  = { .x_m      = { x[0], x[1], x[2] },
+                                 .own_m    = radius_m + margin_m,
+                                 .margin_m = margin_m,
+                                 .half_m   = s->period_m > 0.0 ? 0.5 * s->period_m : (double)INFINITY,
+                                 .grain    = i },
+                      .far_m = radius_m + s->radius_max_m + 2.0 * margin_m,
+    };
+    enum dig_status status = search(s, &q, finds);
+    for (int side = -1; s->period_m > 0.0 && side <= 1 && status == DIG_OK; side += 2) {
+        q.near.x_m[1] = x[1] + side * s->period_m;
+        status        = search(s, &q, finds);
+    }
+    return status;
 }
 
 static void search_share(void *const context, const size_t member)
@@ -192,16 +224,10 @@ static void search_share(void *const context, const size_t member)
     const struct shared_search *const s     = context;
     struct finds *const               finds = &s->finds[member];
     const size_t                      end   = dig_crew_share(s->crew, s->grains->n, member + 1);
-    struct query                      q     = {
-                                 .all          = s->cell_grain,
-                                 .radius_max_m = s->radius_max_m,
-                                 .half_m = s->period_m > 0.0 ? 0.5 * s->period_m : (double)INFINITY,
-    };
     for (size_t i = dig_crew_share(s->crew, s->grains->n, member);
          i < end && finds->status == DIG_OK; i++) {
         s->list->start[i] = (uint32_t)finds->used; // from the member's first
-        q.own             = make_cell_grain(s->grains, s->margin_m, (uint32_t)i);
-        finds->status     = search_images(&q, &s->grid, s->period_m, finds);
+        finds->status     = search_images(s, (uint32_t)i, finds);
     }
 }
 
@@ -267,14 +293,13 @@ static enum dig_status build(struct shared_search *const s)
     if (status != DIG_OK) {
         return status;
     }
-    s->cell_grain = malloc((n + 1) * sizeof *s->cell_grain);
-    if (s->cell_grain == NULL) {
-        status = DIG_ENOMEM;
-    } else {
+    status = make_in_cells(n, &s->in_cells);
+    if (status == DIG_OK) {
         dig_crew_each(s->crew, n, order_by_cells, s);
         status = find_pairs(s);
     }
-    free(s->cell_grain);
+    free(s->in_cells.x_m);
+    free(s->in_cells.grain);
     dig_cell_grid_finish(&s->grid);
     return status;
 }
@@ -303,6 +328,7 @@ enum dig_status dig_neighbours_build(const struct dig_grains *const grains, cons
         .grains   = grains,
         .margin_m = margin_m,
         .period_m = period_y_m,
+        .isa      = dig_kernel_best(),
         .crew     = crew,
         .finds    = calloc(dig_crew_members(crew), sizeof *search.finds),
         .list     = list,

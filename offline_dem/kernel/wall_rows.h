@@ -4,26 +4,32 @@
 #ifndef DIG_OFFLINE_DEM_KERNEL_WALL_ROWS_H
 #define DIG_OFFLINE_DEM_KERNEL_WALL_ROWS_H
 
+#include "offline_dem/kernel/block.h"
 #include "offline_dem/kernel/rows.h"
 #include "offline_dem/kernel/rows_single.h"
 #include "offline_dem/law/wall.h"
 
-// d of grains at x from walls: the distance along the normal. A grain pressed through a wall stays
-// on its inner side.
-INLINED void put_walls(const four wall[4], const four x[4], const double least_m,
-                       double (*const in)[DIG_BLOCK], const size_t c)
+// Distances of four grains from walls along the normals, which come out as columns. A grain pressed
+// through a wall stays on its inner side.
+INLINED four wall_distances(const four wall[4], const four x[4], const double least_m, four n[4])
 {
     const four least = { least_m, least_m, least_m, least_m };
-    four       n[4];
     four       at[4];
     transpose_four(wall, n);
     transpose_four(x, at);
-    const four       h    = n[0] * at[0] + n[1] * at[1] + n[2] * at[2] - n[3];
-    const four_index out  = h > least;
-    const four       safe = (four)((out & (four_index)h) | (~out & (four_index)least));
+    const four       h   = n[0] * at[0] + n[1] * at[1] + n[2] * at[2] - n[3];
+    const four_index out = h > least;
+    return (four)((out & (four_index)h) | (~out & (four_index)least));
+}
+
+INLINED void put_walls(const four wall[4], const four x[4], const double least_m,
+                       double (*const in)[DIG_BLOCK], const size_t c)
+{
+    four       n[4];
+    const four h = wall_distances(wall, x, least_m, n);
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
-        const four d = safe * n[k];
+        const four d = h * n[k];
         store_four(&in[k][c], &d);
     }
 }
@@ -78,6 +84,24 @@ INLINED void scatter_walls(const struct dig_contacts *const list,
     }
 }
 
+// The normal is the wall's own. One worked out from the distance is off by its rounding, which
+// leaves springs along the normal that fade into subnormal floats, and these are slow.
+INLINED void put_walls_single(const four wall[4], const four x[4], const double least_m,
+                              const double radius_m, float (*const normal)[DIG_BLOCK],
+                              const size_t c)
+{
+    const four radius = { radius_m, radius_m, radius_m, radius_m };
+    four       n[4];
+    const four h = wall_distances(wall, x, least_m, n);
+    n[3]         = radius - h;
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++) {
+        const four_single value = __builtin_convertvector(n[k], four_single);
+        memcpy(&normal[k][c], &value, sizeof value);
+    }
+}
+
+// Padding beyond the last contact overlaps nothing.
 INLINED void gather_walls_single(const struct single_contacts *const contacts,
                                  const struct dig_wall wall[], const double radius_m,
                                  const struct dig_single_motion *const motion,
@@ -96,13 +120,16 @@ INLINED void gather_walls_single(const struct single_contacts *const contacts,
             x[l]   = load_four(m->x_m);
             v_w[l] = load_eight(m->v_mps);
         }
-        put_walls(n, x, 1e-3 * radius_m, block->d_m, c);
-        put_walls(n + 4, x + 4, 1e-3 * radius_m, block->d_m, c + 4);
+        put_walls_single(n, x, 1e-3 * radius_m, radius_m, block->normal, c);
+        put_walls_single(n + 4, x + 4, 1e-3 * radius_m, radius_m, block->normal, c + 4);
         put_eight(v_w, block->in, c);
 #pragma GCC unroll 3
         for (size_t k = 0; k < 3; k++) {
             memcpy(&block->in[6 + k][c], &zero, sizeof zero);
         }
+    }
+    for (size_t c = contacts->count; c < round_up(contacts->count, LANES_SINGLE); c++) {
+        block->normal[3][c] = -FAR_m;
     }
 }
 
