@@ -1,6 +1,6 @@
 #!/bin/bash
 # The main job, end to end, on digs that another DEM code computed: add to a table, let a machine
-# dig on a real bus, let the daemon identify the gravel and predict the real dig, show how right it was.
+# dig on a real bus, let the daemon identify the gravel and predict the actual dig, show how right it was.
 #   BIN=build/bin OUT=build/demo scripts/demo.sh
 set -eu
 bin=${BIN:-build/bin} out=${OUT:-build/demo}
@@ -20,7 +20,7 @@ chmod u+w "$out/table.sqlite"
 "$bin/digtable" generate config/scenes/product.yaml config/grids/demo.yaml -o "$out/table.sqlite" --time-limit 60
 "$bin/digtable" check "$out/table.sqlite"
 
-say "2. Machine, bus and daemon: a simple dig, then a real dig, in gravel nobody here computed"
+say "2. Machine, bus and daemon: a simple dig, then an actual dig, in gravel nobody here computed"
 echo "  recordings: LIGGGHTS, $(basename "$simple") then $(basename "$actual"), on a machine 10 times the rig"
 runs=("Modbus TCP=$out/modbus.lcm")
 scripts/demo_run.sh modbus "$bin" "$out" "$out/table.sqlite" "$machine" "$speed" "$simple" "$actual" &
@@ -44,7 +44,7 @@ fi
 [ "$failed" = 0 ]
 grep -h "real time\|realtime\|locked" "$out"/modbus.daemon.log | head -n 3 || true
 
-say "3. What was identified, and how right the prediction of the real dig was"
+say "3. What was identified, and how right the prediction of the actual dig was"
 "$bin/digreport" --table "$out/table.sqlite" --machine "$machine" --truth "$truth" \
     --title "Digsight demo: $gravel" --recording "$simple" --recording "$actual" \
     --html "$out/report.html" --json "$out/report.json" "${runs[@]}" 2>&1 || {

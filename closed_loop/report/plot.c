@@ -144,6 +144,16 @@ static void put_sample(FILE *const to, const struct dig_plot_series *const s, co
     }
 }
 
+// A curve of which nothing is known is in no key.
+static bool in_key(const struct dig_plot_series *const s)
+{
+    size_t i = 0;
+    while (i < s->n && !isfinite(s->y[i])) {
+        i++;
+    }
+    return s->title != NULL && i < s->n;
+}
+
 // The key from line y on, as many lines as it takes; to may be NULL, to count them.
 static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const unsigned y)
 {
@@ -151,7 +161,7 @@ static unsigned put_key(FILE *const to, const struct dig_plot *const plot, const
     unsigned lines = 0;
     for (size_t i = 0; i < plot->series; i++) {
         const struct dig_plot_series *const s = &plot->s[i];
-        if (s->title == NULL) {
+        if (!in_key(s)) {
             continue;
         }
         const unsigned wide = SAMPLE + width_of(s->title);

@@ -24,6 +24,12 @@ int dig_report_axis_digits(const int axis)
     return axis == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
 }
 
+const char *dig_report_chance(const double chance, const size_t size, char text[const])
+{
+    (void)snprintf(text, size, chance < 1e-6 ? "below 1e-6" : "%.2g", chance);
+    return text;
+}
+
 void dig_report_text(const struct dig_report *const report, FILE *const to)
 {
     assert(report != NULL && to != NULL);
@@ -172,7 +178,7 @@ enum dig_status dig_report_html(const struct dig_report *const report, FILE *con
                      "identified gravel", error);
         if (status == DIG_OK) {
             status = put_plot(to, &run->real, report->lambda,
-                              "The real dig, predicted before it was dug", "predicted", error);
+                              "The actual dig, predicted before it was dug", "predicted", error);
         }
         if (status != DIG_OK) {
             return status;

@@ -29,7 +29,7 @@ struct dig_report_dig {
     double recording_Nm[DIG_CURVE_POINTS]; // what was fed to the rig; NaN where not known
 };
 
-/// One run: one bus, one simple dig that identifies, one real dig that was predicted.
+/// One run: one bus, one simple dig that identifies, one actual dig that was predicted.
 struct dig_report_run {
     char                  name[64]; // "Modbus TCP"
     char                  dig[96];  // which recording, for people
@@ -55,6 +55,9 @@ struct dig_report {
 /// An axis of the gravel for people, with its unit; and the digits that are enough to see.
 const char *dig_report_axis(int axis);
 int         dig_report_axis_digits(int axis);
+
+/// A chance for people: none is 0, though numbers may be too small to be told from it.
+const char *dig_report_chance(double chance, size_t size, char text[]);
 
 /// The lines a terminal gets: true and identified gravel with its 90 % interval, error and floor.
 void dig_report_text(const struct dig_report *report, FILE *to);

@@ -10,6 +10,12 @@
 
 #define CANDIDATES_SHOWN 12
 
+// Of another size than the rig, and that is known.
+static bool is_scaled(const double lambda)
+{
+    return lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
+}
+
 static void put_bar(FILE *const to, const double px)
 {
     (void)fprintf(to,
@@ -78,7 +84,7 @@ static void put_found(FILE *const to, const struct dig_trace *const trace)
         (void)fprintf(to,
                       "<tr><th>gravel: %s</th><td><b>%.*f</b></td><td>%.*f to %.*f</td>"
                       "<td>%.*f</td></tr>\n",
-                      dig_axis_name((enum dig_axis)a), digits, trace->gravel.value[a], digits,
+                      dig_report_axis(a), digits, trace->gravel.value[a], digits,
                       trace->low.value[a], digits, trace->high.value[a], digits,
                       trace->gravel_before.value[a]);
     }
@@ -110,6 +116,7 @@ static void put_residuals(FILE *const to, const struct dig_trace *const trace)
         [DIG_PART_SOIL]   = "in the soil",
         [DIG_PART_LIFTED] = "lifted out",
     };
+    char   chance[32];
     double most = 2.0;
     for (int p = 0; p < DIG_TRACE_PHASES; p++) {
         most = isfinite(trace->residual[p]) ? fmax(most, trace->residual[p]) : most;
@@ -125,8 +132,8 @@ static void put_residuals(FILE *const to, const struct dig_trace *const trace)
         "</table>\n<p class=muted>Measured minus predicted without any effect, rms over "
         "the rms expected: 1 is what noise makes. Effects of the machine show in the air, "
         "those of the soil do not. The chance of residuals this large if nothing were "
-        "missing is %.2g; it was decided at %.2g.</p>\n",
-        trace->p_complete, trace->false_alarm);
+        "missing is %s; it was decided at %.2g.</p>\n",
+        dig_report_chance(trace->p_complete, sizeof chance, chance), trace->false_alarm);
 }
 
 static void put_candidates(FILE *const to, const struct dig_trace *const trace)
@@ -176,7 +183,7 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
     char                title[224];
     char                way[DIG_APPROACH_TEXT_SIZE];
     const size_t        n      = DIG_CURVE_POINTS;
-    const bool          scaled = lambda > 0.0 && fabs(lambda - 1.0) > 1e-6;
+    const bool          scaled = is_scaled(lambda);
     const double        power  = channel == DIG_CHANNEL_MY_Nm ? 4.0 : 3.0;
     const double        unit   = scaled ? 1e-3 * pow(lambda, power) : 1.0;
     dig_plot_of_dig(unit, dig->value[channel], dig->first, dig->last, curves->after.value[channel],
@@ -309,7 +316,7 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     dig_html_begin(to, title);
     dig_html_put(to, "<p class=result>%s</p>\n<p>%zu digs against ", sentence, trace->judged.digs);
     dig_html_without_folders(to, subject->table);
-    if (subject->lambda > 0.0) {
+    if (is_scaled(subject->lambda)) {
         (void)fprintf(to,
                       "; what dug is %.3g times the rig, which makes a moment %.0f times as large",
                       subject->lambda, pow(subject->lambda, 4.0));

@@ -1,5 +1,6 @@
 #include "closed_loop/report/trace_report.h"
 
+#include "closed_loop/report/report.h"
 #include "closed_loop/report/residual_report.h"
 #include "core/markup.h"
 #include "core/text.h"
@@ -273,6 +274,7 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
 {
     assert(trace != NULL && to != NULL);
     char sentence[1024];
+    char chance[32];
     dig_trace_sentence(trace, sizeof sentence, sentence);
     (void)fprintf(to, "%s\n", sentence);
     for (size_t e = 0; e < trace->effects; e++) {
@@ -303,8 +305,9 @@ void dig_trace_text(const struct dig_trace *const trace, FILE *const to)
     put_error_line(to, "after ", &trace->after, trace->holdouts);
     (void)fprintf(to,
                   "  noise floor  %.3f   chance of such residuals if nothing were missing "
-                  "%.3g, decided at %.3g\n",
-                  trace->noise_floor, trace->p_complete, trace->false_alarm);
+                  "%s, decided at %.3g\n",
+                  trace->noise_floor, dig_report_chance(trace->p_complete, sizeof chance, chance),
+                  trace->false_alarm);
     if (trace->advice[0] != '\0') {
         (void)fprintf(to, "  next: %s\n", trace->advice);
     }

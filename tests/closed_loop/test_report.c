@@ -58,8 +58,23 @@ TEST(the_page_stands_alone_and_holds_the_numbers)
     assert_non_null(strstr(page, "0.123"));
     assert_non_null(strstr(page, "2100 to 2800"));
     assert_int_equal(count_of(page, "<svg"), 2);
+    // Of the simple dig no recording is known; the actual one's is drawn, and named in the key.
+    assert_int_equal(count_of(page, ">recording fed to the rig</text>"), 1);
+    assert_int_equal(count_of(page, ">measured through pressures</text>"), 2);
     check_page_stands_alone(page);
     free(page);
+}
+
+TEST(a_chance_too_small_to_say_is_not_called_none)
+{
+    static const struct {
+        double      chance;
+        const char *said;
+    } of[] = { { 0.0, "below 1e-6" }, { 9e-7, "below 1e-6" }, { 0.0031, "0.0031" }, { 1.0, "1" } };
+    char text[32];
+    for (size_t i = 0; i < sizeof of / sizeof of[0]; i++) {
+        assert_string_equal(dig_report_chance(of[i].chance, sizeof text, text), of[i].said);
+    }
 }
 
 TEST(the_terminal_gets_truth_estimate_interval_and_error)

@@ -325,6 +325,28 @@ TEST(effects_are_told_by_what_people_know_of_them)
     drop(e);
 }
 
+// A rig is no times the rig.
+TEST(the_size_of_what_dug_is_told_where_it_is_another)
+{
+    static const struct {
+        double      lambda;
+        const char *said;
+    } of[] = { { 10.0, "what dug is 10 times the rig" }, { 1.0, NULL }, { 0.0, NULL } };
+    struct example *const e = make();
+    e->trace.judged.digs    = 0;
+    for (size_t i = 0; i < sizeof of / sizeof of[0]; i++) {
+        e->subject.lambda = of[i].lambda;
+        char *const page  = page_of(e);
+        if (of[i].said != NULL) {
+            assert_contains(page, of[i].said);
+        } else {
+            assert_null(strstr(page, "times the rig"));
+        }
+        free(page);
+    }
+    drop(e);
+}
+
 // A change that was not made is told in every form of the report.
 TEST(what_is_named_and_not_applied_is_told)
 {

@@ -189,7 +189,7 @@ enum dig_status digreport_run(const struct digreport_options *const     options,
     if (!published.matched || !published.predicted) {
         return dig_error_set(error, DIG_ENOMATCH, "%s: the daemon %s", log,
                              published.matched
-                                 ? "predicted no real dig after identifying the gravel"
+                                 ? "predicted no actual dig after identifying the gravel"
                                  : "identified no gravel");
     }
 
