@@ -70,7 +70,8 @@ static enum dig_status check_link(const struct dig_link *const link, const char 
 {
     const double       most     = 2.0 * DIG_PI;
     const struct value values[] = {
-        { "length_m", link->length_m, is_positive(link->length_m), "a number > 0" },
+        { "length_m", link->length_m, link->length_m > 0.0 && link->length_m < 100.0,
+          "metres, > 0 and < 100" },
         { "mass_kg", link->mass_kg, is_positive(link->mass_kg), "a number > 0" },
         { "inertia_kgm2", link->inertia_kgm2, is_positive(link->inertia_kgm2), "a number > 0" },
         { "com_m", NAN, dig_vec2_is_finite(link->com_m), "two finite numbers" },

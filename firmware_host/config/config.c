@@ -4,7 +4,9 @@
 #include "files/yaml/yaml.h"
 #include "firmware_host/config/config_text.h"
 
+#include <arpa/inet.h>
 #include <assert.h>
+#include <netinet/in.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -134,6 +136,28 @@ static enum dig_status take_text(const struct work *const work, const char *cons
     return DIG_OK;
 }
 
+// Of LCM's own kinds those that publish: a multicast group, or a log file. Of a network that is
+// merely not there yet nothing is said: the daemon tries again.
+static bool is_lcm_url(const char *const text)
+{
+    static const char network[] = "udpm://";
+    static const char file[]    = "file://";
+    char              address[INET_ADDRSTRLEN];
+    struct in_addr    group;
+    if (strncmp(text, network, strlen(network)) != 0) {
+        return strncmp(text, file, strlen(file)) == 0;
+    }
+    const char *const from   = text + strlen(network);
+    const size_t      length = strcspn(from, ":?");
+    if (length >= sizeof address) {
+        return false;
+    }
+    memcpy(address, from, length);
+    address[length] = '\0';
+    return length == 0 ||
+           (inet_pton(AF_INET, address, &group) == 1 && IN_MULTICAST(ntohl(group.s_addr)));
+}
+
 static enum dig_status take_texts(const struct work *const work)
 {
     const struct dig_config_text *const text   = work->text;
@@ -156,6 +180,10 @@ static enum dig_status take_texts(const struct work *const work)
             !dig_path_beside(work->path, path[i].from, sizeof path[i].to->text, path[i].to->text)) {
             return REFUSE(work, "%s: too long a path", path[i].key);
         }
+    }
+    if (text->lcm_url != NULL && !is_lcm_url(text->lcm_url)) {
+        return REFUSE(work, "lcm.url: \"%.60s\", expected udpm://GROUP:PORT with a multicast group",
+                      text->lcm_url);
     }
     const enum dig_status status =
         take_text(work, "scene", text->scene, sizeof config->scene, config->scene);

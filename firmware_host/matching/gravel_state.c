@@ -61,7 +61,13 @@ static enum dig_status check_age(const char *const path, const double most_s, do
     }
     (void)clock_gettime(CLOCK_REALTIME, &wall);
     *age_s = difftime(wall.tv_sec, file.st_mtim.tv_sec);
-    if (!(*age_s <= most_s && *age_s >= -clock_back_s)) {
+    if (*age_s < -clock_back_s) {
+        return dig_error_set(error, DIG_ESTALE,
+                             "%s: dated %.1f h ahead of the clock, expected no such file (is the "
+                             "clock right?): a simple dig is wanted",
+                             path, -*age_s / 3600.0);
+    }
+    if (!(*age_s <= most_s)) {
         return dig_error_set(error, DIG_ESTALE,
                              "%s: %.1f h old, expected at most %.1f h: a simple dig is wanted",
                              path, *age_s / 3600.0, most_s / 3600.0);

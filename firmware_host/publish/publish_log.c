@@ -1,5 +1,6 @@
 #include "firmware_host/publish/publish_log.h"
 
+#include "core/text.h"
 #include "core/units.h"
 #include "estimator/match/match.h"
 
@@ -75,11 +76,15 @@ void dig_publisher_log_match(const struct dig_publisher *const p)
         dig_publisher_log(p, "no gravel known: %s", k->wanted);
         return;
     }
+    char        which[32] = "from before";
     char        how[96];
     char        untold[DIG_UNTOLD_SIZE];
     char        digs[48]     = "";
     char        weighted[96] = "";
     const char *forces       = m->forces ? ", by moment and forces" : ", by the moment alone";
+    if (!k->restored) {
+        (void)snprintf(which, sizeof which, "dig %" PRIu32, m->dig_count);
+    }
     if (m->digs > 1) {
         (void)snprintf(digs, sizeof digs, ", %zu digs together", m->digs);
     }
@@ -93,14 +98,14 @@ void dig_publisher_log_match(const struct dig_publisher *const p)
     dig_match_unresolved(m, untold);
     dig_publisher_log(
         p,
-        "%s %u (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
+        "%s (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "
         "(%.0f … %.0f) kg/m3, distance %.3f, noise floor %.3f%s%s%s%s%s%s",
-        k->restored ? "from before, dig" : "dig", m->dig_count, k->trajectory, how,
-        m->gravel.value[DIG_AXIS_FRICTION], m->low.value[DIG_AXIS_FRICTION],
-        m->high.value[DIG_AXIS_FRICTION], m->gravel.value[DIG_AXIS_ROLLING],
-        m->low.value[DIG_AXIS_ROLLING], m->high.value[DIG_AXIS_ROLLING],
-        m->gravel.value[DIG_AXIS_DENSITY_kgpm3], m->low.value[DIG_AXIS_DENSITY_kgpm3],
-        m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance, m->noise_floor, weighted, forces, digs,
+        which, k->trajectory, how, m->gravel.value[DIG_AXIS_FRICTION],
+        m->low.value[DIG_AXIS_FRICTION], m->high.value[DIG_AXIS_FRICTION],
+        m->gravel.value[DIG_AXIS_ROLLING], m->low.value[DIG_AXIS_ROLLING],
+        m->high.value[DIG_AXIS_ROLLING], m->gravel.value[DIG_AXIS_DENSITY_kgpm3],
+        m->low.value[DIG_AXIS_DENSITY_kgpm3], m->high.value[DIG_AXIS_DENSITY_kgpm3], m->distance,
+        m->noise_floor, weighted, forces, digs,
         m->outside ? "; OUTSIDE the table: none of its gravels" : "",
         untold[0] != '\0' ? "; a FAMILY of gravels, not told: " : "", untold);
 }
@@ -117,14 +122,31 @@ void dig_publisher_log_drops(struct dig_publisher *const p, const int64_t now_ns
     if (all > p->logged_drops && now_ns >= p->next_drops_ns) {
         p->logged_drops  = all;
         p->next_drops_ns = now_ns + 10 * DIG_NS_PER_S;
-        dig_publisher_log(p,
-                          "dropped so far: %" PRId64 " not available, %" PRId64
-                          " out of range, %" PRId64 " frozen, %" PRId64 " NaN, %" PRId64
-                          " malformed, %" PRId64 " wrong checksums, %" PRId64 " repeated, %" PRId64
-                          " jumps, %" PRId64 " stuck, %" PRId64 " missed, %" PRId64
-                          " timeouts, %" PRId64 " lost",
-                          d->not_available, d->out_of_range, d->frozen, d->nan, malformed, checksum,
-                          d->repeated, d->jump, d->stuck, d->missed, timeouts, p->health.lost);
+        const struct {
+            int64_t     count;
+            const char *of;
+        } drop[] = {
+            { d->not_available, "not available" },
+            { d->out_of_range, "out of range" },
+            { d->frozen, "frozen" },
+            { d->nan, "NaN" },
+            { malformed, "malformed" },
+            { checksum, "wrong checksums" },
+            { d->repeated, "repeated" },
+            { d->jump, "jumps" },
+            { d->stuck, "stuck" },
+            { d->missed, "missed" },
+            { timeouts, "timeouts" },
+            { p->health.lost, "lost" },
+        };
+        char text[400] = "";
+        for (size_t i = 0; i < sizeof drop / sizeof drop[0]; i++) {
+            if (drop[i].count > 0) {
+                dig_text_add(sizeof text, text, "%s%" PRId64 " %s", text[0] == '\0' ? "" : ", ",
+                             drop[i].count, drop[i].of);
+            }
+        }
+        dig_publisher_log(p, "dropped so far: %s", text);
     }
 }
 

@@ -55,6 +55,8 @@ TEST(what_cannot_be_is_refused_by_its_key)
         const char *key;
         double     *at, wrong;
     } number[] = {
+        { "boom.length_m: 3620, expected metres", &m.link[0].length_m, 3620.0 },
+        { "boom.length_m: nan", &m.link[0].length_m, NAN },
         { "arm.mass_kg: 0", &m.link[1].mass_kg, 0.0 },
         { "bucket.max_deg", &m.link[2].max_rad, m.link[2].min_rad },
         { "cylinders.boom.bore_m: ", &m.cylinder[0].bore_m, NAN },

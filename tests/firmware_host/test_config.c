@@ -157,6 +157,12 @@ TEST(defects_are_refused_with_file_line_key_and_write_nothing)
         { MINIMAL REPLAY "publish: {estimate_every: 0}\n", "publish.estimate_every: 0, expected" },
         { MINIMAL REPLAY "publish: {prediction_Hz: 0}\n", "publish.prediction_Hz: 0, expected" },
         { MINIMAL REPLAY "lcm: {uri: x}\n", "bad.yaml:4: lcm.uri: unknown key" },
+        { MINIMAL REPLAY "lcm: {url: \"udp://239.255.76.67:7667\"}\n",
+          "bad.yaml:4: lcm.url: \"udp://239.255.76.67:7667\", expected udpm://" },
+        { MINIMAL REPLAY "lcm: {url: \"udpm://192.168.0.4:7667\"}\n", "bad.yaml:4: lcm.url: " },
+        { MINIMAL REPLAY "lcm: {url: \"udpm://controller:7667\"}\n", "bad.yaml:4: lcm.url: " },
+        { MINIMAL REPLAY "lcm: {url: \"udpm://239.255.76.67.239.255.76.67\"}\n", "lcm.url: " },
+        { MINIMAL REPLAY "lcm: {url: \"\"}\n", "bad.yaml:4: lcm.url: " },
         { MINIMAL REPLAY "identify: {trajectories: []}\n", "identify.trajectories" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -43,7 +43,7 @@ TEST(what_is_known_survives_in_its_file)
         const char *what, *expected;
     } bad[] = { { "table", "expected one of the table's" },
                 { "old", "h old, expected at most" },
-                { "future", "h old, expected at most" },
+                { "future", "dated 2.0 h ahead of the clock" },
                 { "damaged", "match.json" } };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct bench *const other = bench_create();

@@ -26,7 +26,7 @@ start "$work/full.log" unshare -Urm bash -c 'mount -t tmpfs -o size="$1" tmpfs "
     exec "$3" -c "$2/full.yaml"' - $((pages * 4096)) "$work" "$(realpath "$BIN/digsightd")"
 daemon=$started
 disk=/proc/$daemon/root$work/disk # as the daemon sees it
-check "what was kept is known at start" wait_for 30 grep -q "from before, dig" "$work/full.log"
+check "what was kept is known at start" wait_for 30 grep -q "from before (" "$work/full.log"
 check "a disk that is full is said" wait_for 60 grep -q "disk/match.json.*: No space left on device" "$work/full.log"
 check "what was kept before is whole" cmp -s "$work/match.json" "$disk/match.json"
 check "and nothing half written lies beside it" [ "$(ls "$disk")" = match.json ]

@@ -35,7 +35,7 @@ daemon_ends bad
 took=$(since "$began")
 bad=$(last health "$f" $h_malformed)
 lines=$(grep -c 'dropped so far' "$work/bad.log")
-most=$(sed -nE 's/.*frozen, [0-9]+ NaN, ([0-9]+) malformed.*/\1/p' "$work/bad.log" | tail -n 1)
+most=$(sed -nE 's/.*dropped so far: ([0-9]+) malformed.*/\1/p' "$work/bad.log" | tail -n 1)
 echo "      $took s: $bad exceptions, told in $lines lines, the last of $most"
 check "answers are refused by the hundred" [ "$bad" -gt 100 ]
 check "and said every ten seconds at most" within "$lines" 1 $((took / 10 + 1))

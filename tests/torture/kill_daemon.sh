@@ -37,7 +37,7 @@ while going; do
         [ $killed = yes ] && daemons=$((daemons + 1))
         if [ "${had:-0}" -gt 0 ]; then
             # What it says first is what it knows from before.
-            if grep -q "from before, dig" "$work/err"; then
+            if grep -q "from before (" "$work/err"; then
                 knew=$((knew + 1))
             elif grep -q "match.json" "$work/err"; then
                 fault "the state is refused"
