@@ -79,17 +79,22 @@ static int start(const struct dig_process *const p, FILE *const err, char **cons
 }
 
 // Looks now and then where it may be stopped: a signal may come just before a wait without end.
-static int wait_for(const pid_t child, const volatile sig_atomic_t *const stop)
+static int wait_for(const pid_t child, const struct dig_process *const p)
 {
+    const volatile sig_atomic_t *const stop = p->stop;
+
     const struct timespec pause  = { .tv_nsec = 10000000 };
     bool                  told   = false;
     int                   how    = -1;
     pid_t                 waited = 0;
-    const int             wait   = stop != NULL ? WNOHANG : 0;
+    const int             wait   = stop != NULL || p->watch != NULL ? WNOHANG : 0;
     while ((waited = waitpid(child, &how, wait)) == 0 || (waited < 0 && errno == EINTR)) {
         if (!told && stop != NULL && *stop != 0) {
             (void)kill(-child, SIGTERM);
             told = true;
+        }
+        if (p->watch != NULL) {
+            p->watch(p->context);
         }
         (void)nanosleep(&pause, NULL);
     }
@@ -120,7 +125,7 @@ enum dig_status dig_process_run(const struct dig_process *const process,
             dig_error_set(error, DIG_EINVAL, "%s: %s, expected on PATH", name, strerror(failed));
         goto done;
     }
-    const int how = wait_for(child, process->stop);
+    const int how = wait_for(child, process);
     status        = DIG_OK;
     if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
         dig_process_last_line(err, sizeof words, words);

@@ -17,6 +17,9 @@ struct dig_process {
     FILE              *out;     // standard output
     // Set by a signal: the program and all it started are asked to end. NULL: it is not.
     const volatile sig_atomic_t *stop;
+    // Called every few milliseconds while it runs. NULL: nothing is.
+    void (*watch)(void *context);
+    void *context;
 };
 
 /// Runs a program and waits for its end. DIG_EINVAL: there is none of that name; DIG_EIO: it did

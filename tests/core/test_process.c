@@ -82,6 +82,37 @@ TEST_WITH(it_reads_what_it_is_given, fresh, done)
     (void)fclose(in);
 }
 
+// The program waits for a line that the second look at it writes.
+struct looked {
+    int fd, looks;
+};
+
+static void look(void *const context)
+{
+    struct looked *const l = context;
+    l->looks++;
+    assert_true(l->looks != 2 || write(l->fd, "\n", 1) == 1);
+}
+
+TEST_WITH(it_is_watched_while_it_runs, fresh, done)
+{
+    int  end[2];
+    char line[80];
+    assert_int_equal(pipe(end), 0);
+    FILE *const       in     = fdopen(end[0], "r");
+    struct looked     looked = { .fd = end[1] };
+    const char *const argv[] = { "timeout", "20", "sh", "-c", "read line && echo read", NULL };
+    const struct dig_process process = {
+        .argv = argv, .in = in, .out = out, .watch = look, .context = &looked
+    };
+    assert_int_equal(dig_process_run(&process, NULL), DIG_OK);
+    dig_process_last_line(out, sizeof line, line);
+    assert_string_equal(line, "read");
+    assert_true(looked.looks >= 2);
+    (void)fclose(in);
+    (void)close(end[1]);
+}
+
 static volatile sig_atomic_t stop;
 
 static void request_stop(const int signal)

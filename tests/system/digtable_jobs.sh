@@ -64,6 +64,7 @@ echo "no table" >"$jobs/part/3.sqlite"
 submit --tasks 4
 check "a shard that fails is named, with why" eval 'is $code 1 && grep -q "1 of 4 shards failed, the first, 3: digtable: part/3.sqlite: not a digsight table" $work/err'
 check "the others are done" eval 'is "$(state done)" 3 && is "$(state failed)" 1 && is "$(state digs_done)" 9 && [ ! -e "$table" ]'
+check "meanwhile it says how far it is" grep -qE "^[0-9]+ of 12 digs, [0-4] shards running, .* elapsed, .* left$" $work/err
 digtable status "$jobs/"
 check "status says so of the folder, too" eval 'is $code 0 && grep -q "^shard 3 failed: .*not a digsight table" $work/out && grep -q "s a dig" $work/out'
 made=$(stat -c %Y.%i "$jobs"/shards/[124].sqlite)
@@ -131,6 +132,6 @@ wait $pid
 code=$?
 check "a polite kill ends it with 1, or 0 if it was done" eval '[ $code = 0 ] || { is $code 1 && grep -q "interrupted" $work/err; }'
 check "and what it started" eval '! pgrep -f "part/1.sqlite --shard 1/2" >/dev/null'
-digtable submit $scene $grid -o "$work/cut.sqlite" -j 2
-check "the same command finishes it" eval 'is $code 0 && [ -s "$work/cut.sqlite" ]'
+digtable submit $scene $grid -o "$work/cut.sqlite" -j 2 -q
+check "the same command finishes it, -q without a word" eval 'is $code 0 && [ -s "$work/cut.sqlite" ] && [ ! -s $work/err ]'
 finish

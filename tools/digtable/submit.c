@@ -3,14 +3,17 @@
 
 #include "core/process.h"
 #include "core/text.h"
+#include "offline_dem/sweep/sweep.h"
 #include "tools/digtable/commands.h"
 #include "tools/digtable/job_planning.h"
 #include "tools/digtable/job_state.h"
 #include "tools/digtable/plan.h"
+#include "tools/digtable/progress.h"
 #include "tools/digtable/slurm.h"
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,6 +85,33 @@ static enum dig_status to_slurm(const struct dig_arguments *const a,
     return status;
 }
 
+struct watched {
+    const struct dig_job_folder *folder;
+    struct dig_progress_line     line;
+    double                       from_s;
+    bool                         printed;
+};
+
+static void report_progress(void *const context)
+{
+    struct watched *const w     = context;
+    struct dig_job_state  state = { .shard = NULL };
+    if (!dig_progress_is_due(&w->line) || dig_job_state_read(w->folder, &state, NULL) != DIG_OK) {
+        return;
+    }
+    char                    elapsed[32];
+    char                    left[32];
+    struct dig_job_progress p;
+    dig_job_progress_read(w->folder, &state, &p);
+    (void)fprintf(stderr, "%s%zu of %zu digs, %zu shards running, %s elapsed, %s left",
+                  dig_progress_start(&w->line), p.digs_done, p.digs, state.count[DIG_SHARD_RUNNING],
+                  dig_progress_span(dig_sweep_now_s() - w->from_s, sizeof elapsed, elapsed),
+                  dig_progress_span(p.left_s, sizeof left, left));
+    dig_progress_end(&w->line, false);
+    dig_job_state_finish(&state);
+    w->printed = true;
+}
+
 // The shards by their numbers to xargs, which runs a->workers scripts at a time.
 static enum dig_status compute(const struct dig_arguments *const a, struct submission *const s,
                                FILE *const numbers, struct dig_error *const error)
@@ -90,6 +120,11 @@ static enum dig_status compute(const struct dig_arguments *const a, struct submi
     char script[PATH_MAX];
     (void)snprintf(workers, sizeof workers, "%" PRIu64, a->workers);
     (void)dig_job_folder_file(&s->folder, "run.sh", script);
+    struct watched watched = { .folder = &s->folder,
+                               .line   = dig_progress_line(a->quiet),
+                               .from_s = dig_sweep_now_s() };
+    // Each time all tables that grow are opened.
+    watched.line.every_s             = fmax(watched.line.every_s, 5.0);
     const char *const        argv[]  = { "xargs", "-P", workers, "-n", "1", "sh", script, NULL };
     const struct dig_process process = {
         .argv    = argv,
@@ -97,6 +132,8 @@ static enum dig_status compute(const struct dig_arguments *const a, struct submi
         .in      = numbers,
         .out     = stderr,
         .stop    = a->stop,
+        .watch   = report_progress,
+        .context = &watched,
     };
     for (size_t task = 1; task <= s->folder.plan.tasks; task++) {
         if (s->submit[task]) {
@@ -107,7 +144,11 @@ static enum dig_status compute(const struct dig_arguments *const a, struct submi
         return dig_error_set(error, DIG_EIO, "a temporary file: %s", strerror(errno));
     }
     rewind(numbers);
-    return dig_process_run(&process, error);
+    const enum dig_status status = dig_process_run(&process, error);
+    if (watched.printed && watched.line.tty) {
+        dig_progress_end(&watched.line, true);
+    }
+    return status;
 }
 
 static enum dig_status merge(const struct submission *const s, struct dig_error *const error)
