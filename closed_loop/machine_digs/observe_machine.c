@@ -1,5 +1,6 @@
 #include "closed_loop/machine_digs/observe_machine.h"
 
+#include "closed_loop/machine_digs/pressure_units.h"
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/observe_dig.h"
@@ -91,6 +92,10 @@ static enum dig_status observe(const struct dig_machine *const           machine
     if (status != DIG_OK) {
         return dig_error_set(error, status, "machine %s: %s", machine->name,
                              dig_status_str(status));
+    }
+    status = dig_pressure_units_check(machine, recording, error);
+    if (status != DIG_OK) {
+        return status;
     }
     if (corrected != NULL) {
         dig_estimator_set_machine(estimator, corrected);

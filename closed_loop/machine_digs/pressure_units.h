@@ -1,0 +1,16 @@
+// Pressures of a machine recording in bar or MPa: a bucket of another gravel, to whoever takes
+// them.
+
+#ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_PRESSURE_UNITS_H
+#define DIG_CLOSED_LOOP_MACHINE_DIGS_PRESSURE_UNITS_H
+
+#include "core/machine.h"
+#include "core/recording.h"
+
+/// DIG_EINVAL where the greatest pressure of the recording is below a hundredth of relief_Pa: no
+/// machine holds its boom, or digs, with so little. Without pressures there is nothing to check.
+DIG_MUST_CHECK enum dig_status
+dig_pressure_units_check(const struct dig_machine           *machine,
+                         const struct dig_machine_recording *recording, struct dig_error *error);
+
+#endif // DIG_CLOSED_LOOP_MACHINE_DIGS_PRESSURE_UNITS_H
