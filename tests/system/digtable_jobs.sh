@@ -14,7 +14,7 @@ state() { # KEY: of status --json
 }
 
 digtable status "$table"
-check "what was never submitted has no status" eval 'is $code 2 && grep -q "plan.yaml" $work/err'
+check "what was never submitted has no status" eval 'is $code 2 && grep -q "plan.yaml: no such file, expected a table that .digtable submit. computes" $work/err'
 digtable submit "$work/no.yaml" $grid -o "$table"
 check "a scene that is not there is bad input" eval 'is $code 2 && grep -q "no.yaml" $work/err && [ ! -e "$jobs" ]'
 submit --tasks 13

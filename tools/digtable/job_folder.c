@@ -133,9 +133,14 @@ enum dig_status dig_job_folder_open(const char *const path, struct dig_job_folde
     if (status == DIG_OK) {
         status = check_folder(&found, error);
     }
+    if (status == DIG_OK && access(dig_job_folder_file(&found, "plan.yaml", file), F_OK) != 0) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "%s: no such file, expected a table that "
+                             "`digtable submit` computes",
+                             file);
+    }
     if (status == DIG_OK) {
-        status =
-            dig_job_plan_read(dig_job_folder_file(&found, "plan.yaml", file), &found.plan, error);
+        status = dig_job_plan_read(file, &found.plan, error);
     }
     if (status == DIG_OK) {
         *folder = found;
