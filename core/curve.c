@@ -23,6 +23,15 @@ const char *dig_axis_name(const enum dig_axis axis)
     return axis_names[axis];
 }
 
+void dig_axes_without_units(char names[const])
+{
+    static const char unit[] = "_kgpm3";
+    assert(names != NULL);
+    for (char *at = names; (at = strstr(at, unit)) != NULL;) {
+        memmove(at, at + strlen(unit), strlen(at + strlen(unit)) + 1);
+    }
+}
+
 bool dig_gravel_is_same(const struct dig_gravel *const a, const struct dig_gravel *const b)
 {
     assert(a != NULL && b != NULL);

@@ -41,6 +41,9 @@ enum dig_axis { DIG_AXIS_FRICTION, DIG_AXIS_ROLLING, DIG_AXIS_DENSITY_kgpm3, DIG
 /// "friction", "rolling", "density_kgpm3".
 const char *dig_axis_name(enum dig_axis axis);
 
+/// A text of such names for people, in place: "rolling, density".
+void dig_axes_without_units(char names[]);
+
 struct dig_gravel {
     double value[DIG_AXES];
 };

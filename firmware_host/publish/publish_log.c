@@ -96,6 +96,7 @@ void dig_publisher_log_match(const struct dig_publisher *const p)
     }
     approach_text(k, sizeof how, how);
     dig_match_unresolved(m, untold);
+    dig_axes_without_units(untold);
     dig_publisher_log(
         p,
         "%s (%s%s): friction %.2f (%.2f … %.2f), rolling %.2f (%.2f … %.2f), density %.0f "

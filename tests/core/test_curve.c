@@ -146,6 +146,19 @@ TEST(smoothing_keeps_lines_and_zero_width_keeps_all)
     }
 }
 
+TEST(names_of_axes_for_people_are_without_units)
+{
+    char all[]  = "friction, rolling, density_kgpm3";
+    char one[]  = "density_kgpm3, density_kgpm3";
+    char none[] = "";
+    dig_axes_without_units(all);
+    dig_axes_without_units(one);
+    dig_axes_without_units(none);
+    assert_string_equal(all, "friction, rolling, density");
+    assert_string_equal(one, "density, density");
+    assert_string_equal(none, "");
+}
+
 TEST(gravels_are_the_same_where_every_axis_is)
 {
     const struct dig_gravel a = { { 0.5, 0.0, 2500.0 } };

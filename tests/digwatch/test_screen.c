@@ -134,6 +134,18 @@ TEST_WITH(the_chart_has_the_measured_the_predicted_and_the_band, fresh, NULL)
     }
 }
 
+TEST_WITH(which_axes_were_not_told_stands_in_60_columns, fresh, NULL)
+{
+    char             names[] = "friction, density_kgpm3";
+    digsight_match_t m       = match_of(0.46);
+    m.untold                 = names;
+    dig();
+    say_match(&model, &m);
+    assert_contains(screen(18, 60, true, &plain),
+                    "2 digs, with force; not told: friction, density\n");
+    assert_contains(screen(24, 80, true, &plain), "resists alike; not told: friction, density\n");
+}
+
 TEST_WITH(health_says_what_is_wrong_and_what_to_do, fresh, NULL)
 {
     assert_contains(screen(24, 80, true, &plain), "Health    no message of a daemon was heard yet");

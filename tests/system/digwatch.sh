@@ -46,7 +46,7 @@ cut=$(grep -abo DIGSIGHT_PREDICTION "$work/run.lcm" | sed -n "$(($(grep ^predict
 head -c "$cut" "$work/run.lcm" >"$work/cut.lcm"
 begin --log "$work/cut.lcm" --speed 10000
 check "a log is shown to its end" until_shows '^digwatch cut.lcm, 10000x, at its end .* UTC q: quit$'
-check "the state, the source and the digs" shows '^running, replay .*; 1 digs (0 aborted), 1 identified'
+check "the state, the source and the digs" shows '^running, replay .*; 1 dig (0 aborted), 1 identified'
 check "the moment, measured and predicted" shows '^Moment    -\?[0-9.]* +- [0-9.]* kNm, predicted -\?[0-9.]* (-\?[0-9.]* to [0-9.]*)$'
 check "phase, motion, trajectory and progress" shows '^Phase     dig, [a-z]* *actual  *=*-* [0-9]* %$'
 check "the residual" shows '^Residual  [+-][0-9.]* kNm, [+-][0-9.]* sigma'

@@ -186,6 +186,7 @@ static void show_family(const struct dig_match *const match, FILE *const to)
 {
     char untold[DIG_UNTOLD_SIZE];
     dig_match_unresolved(match, untold);
+    dig_axes_without_units(untold);
     if (untold[0] != '\0') {
         (void)fprintf(
             to, "  a FAMILY of gravels that resist alike, of which this is one: %s not told\n",

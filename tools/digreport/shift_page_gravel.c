@@ -3,6 +3,7 @@
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/plot.h"
 #include "closed_loop/report/report.h"
+#include "core/text.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -70,7 +71,10 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
                   g->digs, g->forces ? "with force" : "moment alone",
                   g->outside ? "outside the table: the nearest" : "");
     if (g->untold[0] != '\0') {
-        dig_html_put(to, "a family; not told: %s", g->untold);
+        char untold[DIGREPORT_TEXT];
+        dig_text_copy(sizeof untold, untold, g->untold);
+        dig_axes_without_units(untold);
+        dig_html_put(to, "a family; not told: %s", untold);
     }
     (void)fputs("</td></tr>\n", to);
 }

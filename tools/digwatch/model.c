@@ -155,6 +155,7 @@ static void take_match(void *const context, const int64_t time_us,
         return;
     }
     dig_text_copy(DIGWATCH_TEXT, match.untold, said->untold);
+    dig_axes_without_units(match.untold);
     dig_text_copy(DIGWATCH_TEXT, match.wanted, said->wanted);
     m->match = match;
 }

@@ -49,9 +49,9 @@ static void put_head(const struct digwatch_model *const model,
     put_clock(model, grid);
     if (model->any_health) {
         const struct digwatch_health *const h = &model->health;
-        (void)digwatch_grid_put(grid, 1, 0, DIGWATCH_PLAIN,
-                                "%s, %.*s; %d digs (%d aborted), %d identified", h->state,
-                                grid->columns - 45, h->input, h->digs, h->aborted, h->matches);
+        (void)digwatch_grid_put(
+            grid, 1, 0, DIGWATCH_PLAIN, "%s, %.*s; %d dig%s (%d aborted), %d identified", h->state,
+            grid->columns - 45, h->input, h->digs, h->digs == 1 ? "" : "s", h->aborted, h->matches);
     }
 }
 
