@@ -37,7 +37,8 @@ void dig_design_text(const struct dig_design *const design, const struct dig_cur
                   set->trajectory[best].name, set->trajectory[design->dig[best].partner].name,
                   design->dig[best].bits_partner);
     if (best == design->reference) {
-        (void)fputs("which is the dig to compare with\n", to);
+        (void)fprintf(to, "%s is the dig that others are compared with: nothing to confirm\n",
+                      set->trajectory[best].name);
         return;
     }
     (void)fprintf(

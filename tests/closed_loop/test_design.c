@@ -172,5 +172,12 @@ TEST(the_reports_name_the_recommended_dig)
     assert_contains(text, "\"ranking\": [\"simpleB\", \"simpleA\"]");
     assert_contains(text, "\"confirmed\": true");
     free(text);
+
+    const struct dig_design alone = { .ranked = 1, .reference = d.rank[1], .rank = { d.rank[1] } };
+    FILE *const             again = written_begin(&text);
+    dig_design_text(&alone, b.set, again);
+    written_end(again);
+    assert_contains(text, "simpleA is the dig that others are compared with: nothing to confirm\n");
+    free(text);
     drop(&b);
 }
