@@ -4,6 +4,7 @@
 #ifndef DIG_CORE_BED_PLAN_H
 #define DIG_CORE_BED_PLAN_H
 
+#include "core/error.h"
 #include "core/scene.h"
 
 /// A number of the scene, and the range it must be in.
@@ -13,15 +14,13 @@ struct dig_scene_range {
     bool        above; // the least itself is refused, too
 };
 
-/// Refuses the first that is not. list: the list whose entry `at` they are of; NULL: of none.
-DIG_MUST_CHECK enum dig_status dig_scene_check_ranges(const char *list, size_t at, size_t n,
-                                                      const struct dig_scene_range range[],
-                                                      struct dig_error            *error);
+/// list: the list whose entry `at` they are of; NULL: of none.
+void dig_scene_check_ranges(const char *list, size_t at, size_t n,
+                            const struct dig_scene_range range[], struct dig_conditions *c);
 
-/// Refuses laws and a bed that cannot be computed; *error names the key ("bed.sizes[1].diameter_m:
-/// -1, expected …"). The rest of the scene has been checked.
-DIG_MUST_CHECK enum dig_status dig_bed_plan_check(const struct dig_scene *scene,
-                                                  struct dig_error       *error);
+/// Refuses laws and a bed that cannot be computed, with the key ("bed.sizes[1].diameter_m: -1,
+/// expected …"). The rest of the scene has been checked.
+void dig_bed_plan_check(const struct dig_scene *scene, struct dig_conditions *c);
 
 /// Adds a line for every part of the laws and the bed that is not the plain one.
 void dig_bed_plan_canonical(const struct dig_scene *scene, char text[DIG_SCENE_TEXT_SIZE]);

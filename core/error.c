@@ -40,3 +40,17 @@ enum dig_status dig_error_name(struct dig_error *const error, const enum dig_sta
     }
     return status;
 }
+
+void dig_require(struct dig_conditions *const conditions, const bool holds,
+                 const char *const format, ...)
+{
+    assert(conditions != NULL && format != NULL);
+    if (!holds && conditions->status == DIG_OK) {
+        struct dig_error what;
+        va_list          args;
+        va_start(args, format);
+        (void)vsnprintf(what.text, sizeof what.text, format, args);
+        va_end(args);
+        conditions->status = dig_error_set(conditions->error, DIG_EINVAL, "%s", what.text);
+    }
+}

@@ -50,23 +50,19 @@ static bool is_not_negative(const double value)
     return value >= 0.0 && isfinite(value);
 }
 
-// Refuses the first that cannot be. member: of the group; "": the group itself.
-static enum dig_status check_values(const char *const group, const char *const member,
-                                    const size_t count, const struct value value[],
-                                    struct dig_error *const error)
+// member: of the group; "": the group itself.
+static void check_values(struct dig_conditions *const c, const char *const group,
+                         const char *const member, const size_t count, const struct value value[])
 {
     for (size_t i = 0; i < count; i++) {
-        if (!value[i].can_be) {
-            return dig_error_set(error, DIG_EINVAL, "%s%s%s.%s: %g, expected %s", group,
-                                 member[0] == '\0' ? "" : ".", member, value[i].key, value[i].found,
-                                 value[i].expected);
-        }
+        dig_require(c, value[i].can_be, "%s%s%s.%s: %g, expected %s", group,
+                    member[0] == '\0' ? "" : ".", member, value[i].key, value[i].found,
+                    value[i].expected);
     }
-    return DIG_OK;
 }
 
-static enum dig_status check_link(const struct dig_link *const link, const char *const name,
-                                  struct dig_error *const error)
+static void check_link(const struct dig_link *const link, const char *const name,
+                       struct dig_conditions *const c)
 {
     const double       most     = 2.0 * DIG_PI;
     const struct value values[] = {
@@ -81,11 +77,11 @@ static enum dig_status check_link(const struct dig_link *const link, const char 
           link->max_rad > link->min_rad && link->max_rad <= most,
           "an angle greater than min_deg, at most 360" },
     };
-    return check_values(name, "", COUNT(values), values, error);
+    check_values(c, name, "", COUNT(values), values);
 }
 
-static enum dig_status check_cylinder(const struct dig_cylinder *const c,
-                                      const enum dig_joint joint, struct dig_error *const error)
+static void check_cylinder(const struct dig_cylinder *const c, const enum dig_joint joint,
+                           struct dig_conditions *const k)
 {
     const bool         has_eye  = joint != DIG_JOINT_BUCKET;
     const struct value values[] = {
@@ -105,11 +101,10 @@ static enum dig_status check_cylinder(const struct dig_cylinder *const c,
         { "pressure_sigma_Pa", c->pressure_sigma_Pa, is_not_negative(c->pressure_sigma_Pa),
           ">= 0" },
     };
-    return check_values("cylinders", dig_joint_name(joint), COUNT(values), values, error);
+    check_values(k, "cylinders", dig_joint_name(joint), COUNT(values), values);
 }
 
-static enum dig_status check_four_bar(const struct dig_four_bar *const bar,
-                                      struct dig_error *const          error)
+static void check_four_bar(const struct dig_four_bar *const bar, struct dig_conditions *const c)
 {
     const struct value values[] = {
         { "rocker_m", bar->rocker_m, is_positive(bar->rocker_m), "a number > 0" },
@@ -118,7 +113,7 @@ static enum dig_status check_four_bar(const struct dig_four_bar *const bar,
         { "ear_m", NAN, dig_vec2_is_finite(bar->ear_m) && dig_vec2_norm(bar->ear_m) > 0.0,
           "two finite numbers, not both 0" },
     };
-    return check_values("four_bar", "", COUNT(values), values, error);
+    check_values(c, "four_bar", "", COUNT(values), values);
 }
 
 static bool is_below(const double value, const double limit)
@@ -126,8 +121,7 @@ static bool is_below(const double value, const double limit)
     return value >= 0.0 && value < limit;
 }
 
-static enum dig_status check_sensor(const struct dig_machine *const machine,
-                                    struct dig_error *const         error)
+static void check_sensor(const struct dig_machine *const machine, struct dig_conditions *const c)
 {
     static const double                  farthest = 10.0; // bucket lengths: beyond, a slip of units
     const struct dig_force_sensor *const s        = &machine->sensor;
@@ -146,12 +140,11 @@ static enum dig_status check_sensor(const struct dig_machine *const machine,
                           { "sigma_Nm", s->sigma_Nm, is_below(s->sigma_Nm, s->limit_Nm), smaller },
                           { "path_sigma_m", s->path_sigma_m, is_not_negative(s->path_sigma_m), ">= 0" },
     };
-    return check_values("force_sensor", "", COUNT(values), values, error);
+    check_values(c, "force_sensor", "", COUNT(values), values);
 }
 
 // What keeps a machine with cylinders on the ground.
-static enum dig_status check_ground(const struct dig_machine *const m,
-                                    struct dig_error *const         error)
+static void check_ground(const struct dig_machine *const m, struct dig_conditions *const c)
 {
     const struct value values[] = {
         { "weight_N", m->weight_N, is_positive(m->weight_N), "a number > 0" },
@@ -163,11 +156,10 @@ static enum dig_status check_ground(const struct dig_machine *const m,
           "between tip_rear_X_m and tip_front_X_m" },
         { "boom_foot_Z_m", m->boom_foot_Z_m, isfinite(m->boom_foot_Z_m), "a finite number" },
     };
-    return check_values("ground", "", COUNT(values), values, error);
+    check_values(c, "ground", "", COUNT(values), values);
 }
 
-static enum dig_status check_tolerance(const struct dig_machine *const machine,
-                                       struct dig_error *const         error)
+static void check_tolerance(const struct dig_machine *const machine, struct dig_conditions *const c)
 {
     static const double               most     = 0.5; // beyond it the file says nothing
     const struct dig_tolerance *const t        = &machine->tolerance;
@@ -178,26 +170,21 @@ static enum dig_status check_tolerance(const struct dig_machine *const machine,
                        { "mass_share", t->mass_share, is_below(t->mass_share, most), ">= 0 and less than 0.5" },
                        { "com_share", t->com_share, is_below(t->com_share, most), ">= 0 and less than 0.5" },
     };
-    return check_values("tolerance", "", COUNT(values), values, error);
+    check_values(c, "tolerance", "", COUNT(values), values);
 }
 
 // Sensors of a machine of either kind, its tolerances and the bucket's width.
-static enum dig_status check_rest(const struct dig_machine *const m, struct dig_error *const error)
+static void check_rest(const struct dig_machine *const m, struct dig_conditions *const c)
 {
     const struct value values[] = {
         { "pressure_step_Pa", m->pressure_step_Pa, is_not_negative(m->pressure_step_Pa), ">= 0" },
         { "angle_step_rad", m->angle_step_rad, is_not_negative(m->angle_step_rad), ">= 0" },
         { "angle_sigma_rad", m->angle_sigma_rad, is_not_negative(m->angle_sigma_rad), ">= 0" },
     };
-    const enum dig_status status = check_values("sensors", "", COUNT(values), values, error);
-    if (status != DIG_OK) {
-        return status;
-    }
-    if (!is_positive(m->bucket_width_m)) {
-        return dig_error_set(error, DIG_EINVAL, "bucket_width_m: %g, expected a number > 0",
-                             m->bucket_width_m);
-    }
-    return check_tolerance(m, error);
+    check_values(c, "sensors", "", COUNT(values), values);
+    dig_require(c, is_positive(m->bucket_width_m), "bucket_width_m: %g, expected a number > 0",
+                m->bucket_width_m);
+    check_tolerance(m, c);
 }
 
 enum dig_status dig_machine_check(const struct dig_machine *const machine,
@@ -205,25 +192,23 @@ enum dig_status dig_machine_check(const struct dig_machine *const machine,
 {
     assert(machine != NULL);
 
-    if (!dig_label_ok(machine->name)) {
-        return dig_error_set(error, DIG_EINVAL, "name: \"%s\", expected " DIG_LABEL_RULE,
-                             machine->name);
-    }
-    enum dig_status status = DIG_OK;
+    struct dig_conditions c = { .error = error };
+    dig_require(&c, dig_label_ok(machine->name), "name: \"%s\", expected " DIG_LABEL_RULE,
+                machine->name);
     if (machine->sensor.fitted) {
-        status = check_link(&machine->link[DIG_JOINT_BUCKET], "bucket", error);
-        status = status == DIG_OK ? check_sensor(machine, error) : status;
-        return status == DIG_OK ? check_rest(machine, error) : status;
+        check_link(&machine->link[DIG_JOINT_BUCKET], "bucket", &c);
+        check_sensor(machine, &c);
+        check_rest(machine, &c);
+        return c.status;
     }
-    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        status = check_link(&machine->link[j], dig_joint_name((enum dig_joint)j), error);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        check_link(&machine->link[j], dig_joint_name((enum dig_joint)j), &c);
     }
-    for (int j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        status = check_cylinder(&machine->cylinder[j], (enum dig_joint)j, error);
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        check_cylinder(&machine->cylinder[j], (enum dig_joint)j, &c);
     }
-    if (status == DIG_OK) {
-        status = check_four_bar(&machine->four_bar, error);
-    }
-    status = status == DIG_OK ? check_rest(machine, error) : status;
-    return status == DIG_OK ? check_ground(machine, error) : status;
+    check_four_bar(&machine->four_bar, &c);
+    check_rest(machine, &c);
+    check_ground(machine, &c);
+    return c.status;
 }

@@ -10,8 +10,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-static enum dig_status check_box(const struct dig_box *const box, const double diameter_m,
-                                 struct dig_error *const error)
+static void check_box(const struct dig_box *const box, const double diameter_m,
+                      struct dig_conditions *const c)
 {
     const struct {
         const char *key;
@@ -22,105 +22,69 @@ static enum dig_status check_box(const struct dig_box *const box, const double d
         { "box_m.z", box->z_min_m, box->z_max_m },
     };
     for (size_t i = 0; i < sizeof side / sizeof side[0]; i++) {
-        if (!(isfinite(side[i].low) && isfinite(side[i].high) &&
-              side[i].high - side[i].low > 2.0 * diameter_m)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s: [%g, %g], expected two numbers, ascending, more than two "
-                                 "grain diameters apart",
-                                 side[i].key, side[i].low, side[i].high);
-        }
+        dig_require(c,
+                    isfinite(side[i].low) && isfinite(side[i].high) &&
+                        side[i].high - side[i].low > 2.0 * diameter_m,
+                    "%s: [%g, %g], expected two numbers, ascending, more than two grain diameters "
+                    "apart",
+                    side[i].key, side[i].low, side[i].high);
     }
-    return DIG_OK;
 }
 
-static enum dig_status check_bucket(const struct dig_bucket *const bucket,
-                                    struct dig_error *const        error)
+static void check_bucket(const struct dig_bucket *const bucket, struct dig_conditions *const c)
 {
-    if (bucket->points < 3 || bucket->points > DIG_PROFILE_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "bucket.profile_m: %zu points, expected 3 to %d",
-                             bucket->points, DIG_PROFILE_MAX);
-    }
-    for (size_t i = 0; i < bucket->points; i++) {
+    dig_require(c, bucket->points >= 3 && bucket->points <= DIG_PROFILE_MAX,
+                "bucket.profile_m: %zu points, expected 3 to %d", bucket->points, DIG_PROFILE_MAX);
+    for (size_t i = 0; c->status == DIG_OK && i < bucket->points; i++) {
         const bool same = i > 0 && hypot(bucket->x_m[i] - bucket->x_m[i - 1],
                                          bucket->z_m[i] - bucket->z_m[i - 1]) < 1e-9;
-        if (!isfinite(bucket->x_m[i]) || !isfinite(bucket->z_m[i]) || same) {
-            return dig_error_set(
-                error, DIG_EINVAL,
-                "bucket.profile_m[%zu]: [%g, %g], expected two finite numbers that "
-                "differ from the point before",
-                i, bucket->x_m[i], bucket->z_m[i]);
-        }
+        dig_require(c, isfinite(bucket->x_m[i]) && isfinite(bucket->z_m[i]) && !same,
+                    "bucket.profile_m[%zu]: [%g, %g], expected two finite numbers that differ from "
+                    "the point before",
+                    i, bucket->x_m[i], bucket->z_m[i]);
     }
-    return DIG_OK;
 }
 
-static enum dig_status check_trajectory(const struct dig_trajectory *const t, const size_t at,
-                                        struct dig_error *const error)
+static void check_trajectory(const struct dig_trajectory *const t, const size_t at,
+                             struct dig_conditions *const c)
 {
-    if (!dig_name_ok(t->name)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "trajectories[%zu].name: \"%s\", expected " DIG_NAME_RULE, at,
-                             t->name);
-    }
-    if (!isfinite(t->theta0_rad) || !isfinite(t->start_x_m) || !isfinite(t->start_z_m)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "trajectories[%zu].start_pin_m: expected finite numbers", at);
-    }
-    if (t->phases < 1 || t->phases > DIG_PHASES_MAX) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "trajectories[%zu].phases: %zu phases, expected 1 to %d", at,
-                             t->phases, DIG_PHASES_MAX);
-    }
-    for (size_t i = 0; i < t->phases; i++) {
+    dig_require(c, dig_name_ok(t->name), "trajectories[%zu].name: \"%s\", expected " DIG_NAME_RULE,
+                at, t->name);
+    dig_require(c, isfinite(t->theta0_rad) && isfinite(t->start_x_m) && isfinite(t->start_z_m),
+                "trajectories[%zu].start_pin_m: expected finite numbers", at);
+    dig_require(c, t->phases >= 1 && t->phases <= DIG_PHASES_MAX,
+                "trajectories[%zu].phases: %zu phases, expected 1 to %d", at, t->phases,
+                DIG_PHASES_MAX);
+    for (size_t i = 0; c->status == DIG_OK && i < t->phases; i++) {
         const struct dig_phase *const p = &t->phase[i];
-        if (!dig_name_ok(p->name)) {
-            return dig_error_set(
-                error, DIG_EINVAL,
-                "trajectories[%zu].phases[%zu].name: \"%s\", expected " DIG_NAME_RULE, at, i,
-                p->name);
-        }
-        if (!(p->duration_s > 0.0 && p->duration_s <= 600.0)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "trajectories[%zu].phases[%zu].duration_s: %g, expected > 0 and "
-                                 "<= 600",
-                                 at, i, p->duration_s);
-        }
-        if (!isfinite(p->vx_mps) || !isfinite(p->vz_mps) || !isfinite(p->omega_radps)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "trajectories[%zu].phases[%zu]: rates expected finite", at, i);
-        }
+        dig_require(c, dig_name_ok(p->name),
+                    "trajectories[%zu].phases[%zu].name: \"%s\", expected " DIG_NAME_RULE, at, i,
+                    p->name);
+        dig_require(c, p->duration_s > 0.0 && p->duration_s <= 600.0,
+                    "trajectories[%zu].phases[%zu].duration_s: %g, expected > 0 and <= 600", at, i,
+                    p->duration_s);
+        dig_require(c, isfinite(p->vx_mps) && isfinite(p->vz_mps) && isfinite(p->omega_radps),
+                    "trajectories[%zu].phases[%zu]: rates expected finite", at, i);
     }
-    return DIG_OK;
 }
 
-static enum dig_status check_trajectories(const struct dig_scene *const scene,
-                                          struct dig_error *const       error)
+static void check_trajectories(const struct dig_scene *const scene, struct dig_conditions *const c)
 {
-    if (scene->trajectories < 1 || scene->trajectories > DIG_TRAJECTORY_MAX) {
-        return dig_error_set(error, DIG_EINVAL, "trajectories: %zu, expected 1 to %d",
-                             scene->trajectories, DIG_TRAJECTORY_MAX);
+    dig_require(c, scene->trajectories >= 1 && scene->trajectories <= DIG_TRAJECTORY_MAX,
+                "trajectories: %zu, expected 1 to %d", scene->trajectories, DIG_TRAJECTORY_MAX);
+    for (size_t i = 0; c->status == DIG_OK && i < scene->trajectories; i++) {
+        const struct dig_trajectory *const t = &scene->trajectory[i];
+        check_trajectory(t, i, c);
+        dig_require(c, dig_scene_find(scene, t->name) == t,
+                    "trajectories[%zu].name: \"%s\" again, expected a new name", i, t->name);
     }
-    for (size_t i = 0; i < scene->trajectories; i++) {
-        const enum dig_status status = check_trajectory(&scene->trajectory[i], i, error);
-        if (status != DIG_OK) {
-            return status;
-        }
-        if (dig_scene_find(scene, scene->trajectory[i].name) != &scene->trajectory[i]) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "trajectories[%zu].name: \"%s\" again, expected a new name", i,
-                                 scene->trajectory[i].name);
-        }
-    }
-    return DIG_OK;
 }
 
 enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_error *const error)
 {
     assert(scene != NULL);
-    if (!dig_name_ok(scene->name)) {
-        return dig_error_set(error, DIG_EINVAL, "name: \"%s\", expected " DIG_NAME_RULE,
-                             scene->name);
-    }
+    struct dig_conditions c = { .error = error };
+    dig_require(&c, dig_name_ok(scene->name), "name: \"%s\", expected " DIG_NAME_RULE, scene->name);
 
     const struct dig_scene_range range[] = {
         { "bucket.width_m", scene->bucket.width_m, 0.0, 100.0, true },
@@ -142,18 +106,15 @@ enum dig_status dig_scene_check(const struct dig_scene *const scene, struct dig_
         { "time_step_s", scene->time_step_s, 0.0, 1e-2, false },
         { "output_s", scene->output_s, 0.0, 0.02, true },
     };
-    enum dig_status status =
-        dig_scene_check_ranges(NULL, 0, sizeof range / sizeof range[0], range, error);
-    if (status == DIG_OK) {
-        status = check_box(&scene->box, scene->material.diameter_m, error);
+    dig_scene_check_ranges(NULL, 0, sizeof range / sizeof range[0], range, &c);
+    check_box(&scene->box, scene->material.diameter_m, &c);
+    check_bucket(&scene->bucket, &c);
+    check_trajectories(scene, &c);
+    // What the bed is compared with has been checked.
+    if (c.status == DIG_OK) {
+        dig_bed_plan_check(scene, &c);
     }
-    if (status == DIG_OK) {
-        status = check_bucket(&scene->bucket, error);
-    }
-    if (status == DIG_OK) {
-        status = check_trajectories(scene, error);
-    }
-    return status == DIG_OK ? dig_bed_plan_check(scene, error) : status;
+    return c.status;
 }
 
 enum { SIZE = DIG_SCENE_TEXT_SIZE };

@@ -158,3 +158,17 @@ TEST(a_time_is_told_in_utc)
     dig_text_utc(INT64_MAX, sizeof text, text);
     assert_string_equal(text, "");
 }
+
+TEST(the_first_condition_that_does_not_hold_is_told)
+{
+    struct dig_error      error = { .text = "" };
+    struct dig_conditions c     = { .error = &error };
+    dig_require(&c, true, "boom");
+    assert_int_equal(c.status, DIG_OK);
+    assert_string_equal(error.text, "");
+    dig_require(&c, false, "%s: %d\n", "arm", 2);
+    dig_require(&c, false, "bucket");
+    dig_require(&c, true, "swing");
+    assert_int_equal(c.status, DIG_EINVAL);
+    assert_string_equal(error.text, "arm: 2?");
+}
