@@ -156,16 +156,12 @@ enum dig_status dig_yaml_tell_namer(const char *const path, const char *const ke
     return status;
 }
 
-enum dig_status dig_yaml_check_ranges(const char *const path, const char *const at,
-                                      const size_t count, const struct dig_yaml_range range[],
-                                      struct dig_error *const error)
+void dig_yaml_check_ranges(const char *const at, const size_t count,
+                           const struct dig_yaml_range range[], struct dig_conditions *const c)
 {
     for (size_t i = 0; i < count; i++) {
-        if (!(range[i].value >= range[i].least && range[i].value <= range[i].most)) {
-            return dig_yaml_refuse(path, error, "%s%s%s: %g, expected %g … %g", at,
-                                   at[0] == '\0' ? "" : ".", range[i].key, range[i].value,
-                                   range[i].least, range[i].most);
-        }
+        dig_require(c, range[i].value >= range[i].least && range[i].value <= range[i].most,
+                    "%s%s%s: %g, expected %g … %g", at, at[0] != '\0' ? "." : "", range[i].key,
+                    range[i].value, range[i].least, range[i].most);
     }
-    return DIG_OK;
 }

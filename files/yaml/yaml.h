@@ -32,10 +32,9 @@ struct dig_yaml_range {
     double      value, least, most;
 };
 
-/// Refuses the first that is out of its range. at: the key they stand in, "messages[3]"; "": none.
-DIG_MUST_CHECK enum dig_status dig_yaml_check_ranges(const char *path, const char *at, size_t count,
-                                                     const struct dig_yaml_range range[],
-                                                     struct dig_error           *error);
+/// at: the key they stand in, "messages[3]"; "": none.
+void dig_yaml_check_ranges(const char *at, size_t count, const struct dig_yaml_range range[],
+                           struct dig_conditions *c);
 
 /// Passes on what a check in core/ found, likewise. Returns status. found and error may be the same
 /// struct.

@@ -30,9 +30,9 @@ static const struct unit units[] = {
     { "Nm", "Nm", 1.0 },
 };
 
-enum dig_status dig_config_map_check_unit(const struct dig_config_map_work *const work,
-                                          const char *const at, const size_t signal,
-                                          struct dig_map_entry *const entry, const bool scale_given)
+void dig_config_map_check_unit(const struct dig_config_map_work *const work, const char *const at,
+                               const size_t signal, struct dig_map_entry *const entry,
+                               const bool scale_given)
 {
     const char *const name = dig_signal_name((enum dig_signal)signal);
     for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
@@ -40,33 +40,29 @@ enum dig_status dig_config_map_check_unit(const struct dig_config_map_work *cons
         if (strcmp(unit->name, entry->can.unit) != 0) {
             continue;
         }
-        if (strcmp(unit->si, strrchr(name, '_') + 1) != 0) {
-            return REFUSE(work, "%s.signal: %s is in %s, expected a signal that can be %s", at,
-                          entry->can.name, unit->name, name);
-        }
-        if (!scale_given) {
-            entry->scale = unit->scale;
-        }
-        if (!(fabs(entry->scale - unit->scale) <= most_calibration * unit->scale)) {
-            return REFUSE(work, "%s.scale: %g, expected %g (the DBC gives %s in %s)", at,
-                          entry->scale, unit->scale, entry->can.name, unit->name);
-        }
+        entry->scale = scale_given ? entry->scale : unit->scale;
+        dig_require(work->c, strcmp(unit->si, strrchr(name, '_') + 1) == 0,
+                    "%s.signal: %s is in %s, expected a signal that can be %s", at, entry->can.name,
+                    unit->name, name);
+        dig_require(work->c, fabs(entry->scale - unit->scale) <= most_calibration * unit->scale,
+                    "%s.scale: %g, expected %g (the DBC gives %s in %s)", at, entry->scale,
+                    unit->scale, entry->can.name, unit->name);
     }
-    return DIG_OK;
 }
 
 // The group of a message, added when it is new.
-static enum dig_status group_of(const struct dig_config_map_work *const work, const char *const at,
-                                const struct dig_dbc_message *const message, unsigned *const group)
+static unsigned group_of(const struct dig_config_map_work *const work, const char *const at,
+                         const struct dig_dbc_message *const message)
 {
     struct dig_signal_map *const map   = work->map;
     const int                    known = dig_signal_map_group(map, message->id, message->extended);
     if (known >= 0) {
-        *group = (unsigned)known;
-        return DIG_OK;
+        return (unsigned)known;
     }
-    if (map->groups == DIG_GROUPS_MAX) {
-        return REFUSE(work, "%s.message: expected at most %d messages", at, DIG_GROUPS_MAX);
+    dig_require(work->c, map->groups < DIG_GROUPS_MAX, "%s.message: expected at most %d messages",
+                at, DIG_GROUPS_MAX);
+    if (work->c->status != DIG_OK) {
+        return 0;
     }
     struct dig_map_group *const added = &map->group[map->groups];
     *added                            = (struct dig_map_group){ .id       = message->id,
@@ -74,92 +70,76 @@ static enum dig_status group_of(const struct dig_config_map_work *const work, co
                                                                 .bytes    = message->bytes,
                                                                 .frame    = { .cycle_s = message->cycle_s } };
     memcpy(added->name, message->name, sizeof added->name);
-    *group = (unsigned)map->groups++;
-    return DIG_OK;
+    return (unsigned)map->groups++;
 }
 
-enum dig_status dig_config_map_find_can(const struct dig_config_map_work *const work,
-                                        const char *const at, const char *const message_name,
-                                        const char *const           signal_name,
-                                        struct dig_map_entry *const entry)
+void dig_config_map_find_can(const struct dig_config_map_work *const work, const char *const at,
+                             const char *const message_name, const char *const signal_name,
+                             struct dig_map_entry *const entry)
 {
-    if (message_name == NULL || signal_name == NULL) {
-        return REFUSE(work, "%s.%s: missing, expected a name of the DBC", at,
-                      message_name == NULL ? "message" : "signal");
-    }
-    const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, message_name);
-    if (message == NULL) {
-        return REFUSE(work, "%s.message: \"%s\", expected a message of the DBC", at, message_name);
-    }
+    dig_require(work->c, message_name != NULL && signal_name != NULL,
+                "%s.%s: missing, expected a name of the DBC", at,
+                message_name == NULL ? "message" : "signal");
+    const struct dig_dbc_message *const message =
+        work->c->status == DIG_OK ? dig_dbc_find(work->dbc, message_name) : NULL;
+    dig_require(work->c, message != NULL, "%s.message: \"%s\", expected a message of the DBC", at,
+                message_name);
     const struct dig_dbc_signal *const signal =
-        dig_dbc_find_signal(work->dbc, message, signal_name);
-    if (signal == NULL) {
-        return REFUSE(work, "%s.signal: \"%s\", expected a signal of %s", at, signal_name,
-                      message_name);
+        message != NULL ? dig_dbc_find_signal(work->dbc, message, signal_name) : NULL;
+    dig_require(work->c, signal != NULL, "%s.signal: \"%s\", expected a signal of %s", at,
+                signal_name, message_name);
+    if (signal != NULL) {
+        dig_require(work->c, !signal->multiplexed && !signal->is_float,
+                    "%s.signal: \"%s\" is %s, expected a plain integer signal", at, signal_name,
+                    signal->multiplexed ? "multiplexed" : "floating-point");
+        entry->can   = *signal;
+        entry->group = group_of(work, at, message);
     }
-    if (signal->multiplexed || signal->is_float) {
-        return REFUSE(work, "%s.signal: \"%s\" is %s, expected a plain integer signal", at,
-                      signal_name, signal->multiplexed ? "multiplexed" : "floating-point");
-    }
-    entry->can = *signal;
-    return group_of(work, at, message, &entry->group);
 }
 
 // A signal about the frame itself: its counter, its checksum.
-static enum dig_status find_frame_signal(const struct dig_config_map_work *const work,
-                                         const char *const at, const char *const key_name,
-                                         const char *const message, const char *const signal,
-                                         struct dig_dbc_signal *const found)
+static struct dig_dbc_signal find_frame_signal(const struct dig_config_map_work *const work,
+                                               const char *const at, const char *const key_name,
+                                               const char *const message, const char *const signal)
 {
-    struct dig_map_entry  entry  = { .used = true };
-    const enum dig_status status = dig_config_map_find_can(work, at, message, signal, &entry);
-    if (status != DIG_OK) {
-        return status;
-    }
-    if (entry.can.bits > 32) {
-        return REFUSE(work, "%s.%s: \"%s\" has %u bits, expected at most 32", at, key_name, signal,
-                      entry.can.bits);
-    }
-    *found = entry.can;
-    return DIG_OK;
+    struct dig_map_entry entry = { .used = true };
+    dig_config_map_find_can(work, at, message, signal, &entry);
+    dig_require(work->c, entry.can.bits <= 32, "%s.%s: \"%s\" has %u bits, expected at most 32", at,
+                key_name, signal, entry.can.bits);
+    return entry.can;
 }
 
-static enum dig_status read_checksum(const struct dig_config_map_work *const work,
-                                     const char *const                       at,
-                                     const struct dig_message_text *const    text,
-                                     struct dig_map_group *const             group)
+static void read_checksum(const struct dig_config_map_work *const work, const char *const at,
+                          const struct dig_message_text *const text,
+                          struct dig_map_group *const          group)
 {
-    const enum dig_status status = find_frame_signal(work, at, "checksum", text->message,
-                                                     text->checksum->signal, &group->checksum_at);
-    if (status != DIG_OK) {
-        return status;
-    }
+    group->checksum = text->checksum->kind;
+    group->checksum_at =
+        find_frame_signal(work, at, "checksum", text->message, text->checksum->signal);
+
     const bool     tsc1 = text->checksum->kind == DIG_CHECKSUM_J1939_TSC1;
     const unsigned bits = group->checksum_at.bits;
     const unsigned from = group->checksum_at.start_bit % 8;
-    if (tsc1 ? bits > 4 || text->counter == NULL
-             : bits != 8 || from != (group->checksum_at.intel ? 0U : 7U)) {
-        return REFUSE(work, "%s.checksum: expected %s", at,
-                      tsc1 ? "up to 4 bits, and a counter beside it"
-                           : "a signal of one whole byte");
-    }
-    group->checksum = text->checksum->kind;
-    return DIG_OK;
+    dig_require(work->c,
+                tsc1 ? bits <= 4 && text->counter != NULL
+                     : bits == 8 && from == (group->checksum_at.intel ? 0U : 7U),
+                "%s.checksum: expected %s", at,
+                tsc1 ? "up to 4 bits, and a counter beside it" : "a signal of one whole byte");
 }
 
-enum dig_status dig_config_map_read_message(const struct dig_config_map_work *const work,
-                                            const size_t                            index,
-                                            const struct dig_message_text *const    text)
+void dig_config_map_read_message(const struct dig_config_map_work *const work, const size_t index,
+                                 const struct dig_message_text *const text)
 {
     char at[32];
     (void)snprintf(at, sizeof at, "messages[%zu]", index);
     const struct dig_dbc_message *const message = dig_dbc_find(work->dbc, text->message);
     const int                           known =
         message != NULL ? dig_signal_map_group(work->map, message->id, message->extended) : -1;
+    dig_require(work->c, known >= 0,
+                "%s.message: \"%s\", expected a message that carries one of the signals", at,
+                text->message);
     if (known < 0) {
-        return REFUSE(work,
-                      "%s.message: \"%s\", expected a message that carries one of the signals", at,
-                      text->message);
+        return;
     }
     struct dig_map_group *const group   = &work->map->group[known];
     const struct dig_yaml_range range[] = {
@@ -168,15 +148,14 @@ enum dig_status dig_config_map_read_message(const struct dig_config_map_work *co
     };
     group->frame.delay_s = text->delay_ms * 1e-3;
     group->frame.cycle_s = text->cycle_ms > 0.0 ? text->cycle_ms * 1e-3 : group->frame.cycle_s;
-
-    enum dig_status status = dig_yaml_check_ranges(work->path, at, 2, range, work->error);
-    if (status == DIG_OK && text->counter != NULL) {
-        status =
-            find_frame_signal(work, at, "counter", text->message, text->counter, &group->counter);
+    dig_yaml_check_ranges(at, 2, range, work->c);
+    if (text->counter != NULL) {
+        group->counter = find_frame_signal(work, at, "counter", text->message, text->counter);
         group->frame.counter_mod = group->counter.bits > 0 && group->counter.bits < 32
                                        ? 1U << group->counter.bits
                                        : UINT32_MAX;
     }
-    return status == DIG_OK && text->checksum != NULL ? read_checksum(work, at, text, group)
-                                                      : status;
+    if (text->checksum != NULL) {
+        read_checksum(work, at, text, group);
+    }
 }
