@@ -38,88 +38,63 @@ static const cyaml_schema_field_t fields[] = {
 static const cyaml_schema_value_t schema = FILE_OF(dig_campaign, fields);
 
 // Puts the campaign's folder before a relative path.
-static enum dig_status resolve(const char *const yaml, const char *const key,
-                               char path[const DIG_CAMPAIGN_PATH], struct dig_error *const error)
+static void resolve(const char *const yaml, const char *const key,
+                    char path[const DIG_CAMPAIGN_PATH], struct dig_conditions *const c)
 {
     char name[DIG_CAMPAIGN_PATH];
     memcpy(name, path, sizeof name);
-    return dig_path_ok(name) && dig_path_beside(yaml, name, sizeof name, path)
-               ? DIG_OK
-               : dig_yaml_refuse(yaml, error, "%s: \"%s\", expected " DIG_PATH_RULE " and shorter",
-                                 key, name);
+    dig_require(c, dig_path_ok(name) && dig_path_beside(yaml, name, sizeof name, path),
+                "%s: \"%s\", expected " DIG_PATH_RULE " and shorter", key, name);
 }
 
 // A recording comes with its campaign: a folder from elsewhere shall reach no other by "..", and a
 // pipe or a device in it would never end.
-static enum dig_status check_recording(const char *const yaml, const char *const key,
-                                       const char *const name, const char *const path,
-                                       struct dig_error *const error)
+static void take_recording(const char *const yaml, const size_t i,
+                           struct dig_campaign_recording *const r, struct dig_conditions *const c)
 {
-    if (!dig_path_stays(name)) {
-        return dig_yaml_refuse(
-            yaml, error,
-            "%s: \"%s\" leaves the campaign's folder, expected a file in it, or an absolute path",
-            key, name);
-    }
+    char        key[64];
+    char        name[DIG_CAMPAIGN_PATH];
     struct stat found;
-    return stat(path, &found) != 0 || S_ISREG(found.st_mode)
-               ? DIG_OK
-               : dig_yaml_refuse(yaml, error, "%s: \"%s\" is no regular file, expected one", key,
-                                 name);
-}
-
-static enum dig_status convert_recording(const char *const yaml, const size_t i,
-                                         struct dig_campaign_recording *const r,
-                                         struct dig_error *const              error)
-{
-    char key[64];
-    char name[DIG_CAMPAIGN_PATH];
     (void)snprintf(key, sizeof key, "recordings[%zu].file", i);
     memcpy(name, r->file, sizeof name);
-    enum dig_status status = resolve(yaml, key, r->file, error);
-    if (status == DIG_OK) {
-        status = check_recording(yaml, key, name, r->file, error);
-    }
-    if (status == DIG_OK && !dig_name_ok(r->trajectory)) {
-        status = dig_yaml_refuse(yaml, error,
-                                 "recordings[%zu].trajectory: \"%s\", expected " DIG_NAME_RULE, i,
-                                 r->trajectory);
-    }
+    resolve(yaml, key, r->file, c);
+    dig_require(
+        c, dig_path_stays(name),
+        "%s: \"%s\" leaves the campaign's folder, expected a file in it, or an absolute path", key,
+        name);
+    dig_require(c, stat(r->file, &found) != 0 || S_ISREG(found.st_mode),
+                "%s: \"%s\" is no regular file, expected one", key, name);
+    dig_require(c, dig_name_ok(r->trajectory),
+                "recordings[%zu].trajectory: \"%s\", expected " DIG_NAME_RULE, i, r->trajectory);
     r->pass = r->pass == 0 ? 1 : r->pass;
-    return status;
 }
 
 // A dig is recorded once: named twice it would count twice, or judge what it was fitted to.
-static enum dig_status check_once(const char *const yaml, const struct dig_campaign *const campaign,
-                                  const size_t i, struct dig_error *const error)
+static void require_once(const struct dig_campaign *const campaign, const size_t i,
+                         struct dig_conditions *const c)
 {
     for (size_t k = 0; k < i; k++) {
-        if (strcmp(campaign->recording[k].file, campaign->recording[i].file) == 0) {
-            return dig_yaml_refuse(yaml, error,
-                                   "recordings[%zu].file: that of recordings[%zu], expected a dig "
-                                   "of its own",
-                                   i, k);
-        }
+        dig_require(c, strcmp(campaign->recording[k].file, campaign->recording[i].file) != 0,
+                    "recordings[%zu].file: that of recordings[%zu], expected a dig of its own", i,
+                    k);
     }
-    return DIG_OK;
 }
 
-static enum dig_status take(const char *const yaml, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const yaml, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     struct dig_campaign *const campaign = loaded;
-    enum dig_status            status   = resolve(yaml, "scene", campaign->scene, error);
-    if (status == DIG_OK && campaign->machine[0] != '\0') {
-        status = resolve(yaml, "machine", campaign->machine, error);
+    resolve(yaml, "scene", campaign->scene, c);
+    if (campaign->machine[0] != '\0') {
+        resolve(yaml, "machine", campaign->machine, c);
     }
-    for (size_t i = 0; status == DIG_OK && i < campaign->recordings; i++) {
-        status = convert_recording(yaml, i, &campaign->recording[i], error);
-        status = status == DIG_OK ? check_once(yaml, campaign, i, error) : status;
+    for (size_t i = 0; i < campaign->recordings; i++) {
+        take_recording(yaml, i, &campaign->recording[i], c);
+        require_once(campaign, i, c);
     }
-    if (status == DIG_OK) {
+    if (c->status == DIG_OK) {
         *(struct dig_campaign *)into = *campaign;
     }
-    return status;
 }
 
 bool dig_campaign_is(const char *const path)

@@ -54,62 +54,50 @@ const char *dig_map_name(const enum dig_map_field field)
     return columns_fields[field].key; // in the order of the enum
 }
 
-static enum dig_status check_field(const char *const path, const enum dig_map_field field,
-                                   const struct dig_map_column *const c,
-                                   struct dig_error *const            error)
+static void check_field(const enum dig_map_field field, const struct dig_map_column *const column,
+                        struct dig_conditions *const c)
 {
-    const bool named = c->column[0] != '\0';
-    const bool fixed = c->value[0] != '\0';
-    if ((named && fixed) || (field < DIG_MAP_NEEDED && !named && !fixed)) {
-        return dig_yaml_refuse(path, error, "columns.%s: expected either a column or a value",
-                               dig_map_name(field));
-    }
-    if (field == DIG_MAP_T_s && !named) {
-        return dig_yaml_refuse(path, error, "columns.t_s: a value, expected a column");
-    }
-    if (!isfinite(c->factor)) {
-        return dig_yaml_refuse(path, error, "columns.%s: factor %g, expected a finite one",
-                               dig_map_name(field), c->factor);
-    }
-    return DIG_OK;
+    const bool named = column->column[0] != '\0';
+    const bool fixed = column->value[0] != '\0';
+    dig_require(c, !(named && fixed) && (field >= DIG_MAP_NEEDED || named || fixed),
+                "columns.%s: expected either a column or a value", dig_map_name(field));
+    dig_require(c, field != DIG_MAP_T_s || named, "columns.t_s: a value, expected a column");
+    dig_require(c, isfinite(column->factor), "columns.%s: factor %g, expected a finite one",
+                dig_map_name(field), column->factor);
 }
 
-static enum dig_status check(const char *const path, const struct dig_curve_map *const map,
-                             struct dig_error *const error)
+static void check_label(const char *const key, const char *const label,
+                        struct dig_conditions *const c)
 {
-    if (strlen(map->engine) > NAME_MAX_LENGTH || strlen(map->version) > NAME_MAX_LENGTH) {
-        return dig_yaml_refuse(path, error, "%s: expected at most %d characters",
-                               strlen(map->engine) > NAME_MAX_LENGTH ? "engine" : "version",
-                               NAME_MAX_LENGTH);
-    }
-    if (!dig_label_ok(map->engine) || !dig_label_ok(map->version)) {
-        const bool engine = !dig_label_ok(map->engine);
-        return dig_yaml_refuse(path, error, "%s: \"%s\", expected " DIG_LABEL_RULE,
-                               engine ? "engine" : "version", engine ? map->engine : map->version);
-    }
-    enum dig_status status = DIG_OK;
-    for (int f = 0; status == DIG_OK && f < DIG_MAP_FIELDS; f++) {
-        status = check_field(path, (enum dig_map_field)f, &map->field[f], error);
-    }
-    return status;
+    dig_require(c, dig_label_ok(label), "%s: \"%s\", expected " DIG_LABEL_RULE, key, label);
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void check_length(const char *const key, const char *const label,
+                         struct dig_conditions *const c)
+{
+    dig_require(c, strlen(label) <= NAME_MAX_LENGTH, "%s: expected at most %d characters", key,
+                NAME_MAX_LENGTH);
+}
+
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     const struct dig_curve_map *const text = loaded;
     struct dig_curve_map              map  = *text;
+    dig_require(c, dig_path_beside(path, text->scene, sizeof map.scene, map.scene),
+                "scene: expected a shorter path");
+    check_length("engine", map.engine, c);
+    check_length("version", map.version, c);
+    check_label("engine", map.engine, c);
+    check_label("version", map.version, c);
     for (int f = 0; f < DIG_MAP_FIELDS; f++) {
-        map.field[f].factor = fabs(text->field[f].factor) > 0.0 ? text->field[f].factor : 1.0;
+        struct dig_map_column *const column = &map.field[f];
+        column->factor                      = fabs(column->factor) > 0.0 ? column->factor : 1.0;
+        check_field((enum dig_map_field)f, column, c);
     }
-    const enum dig_status status =
-        dig_path_beside(path, text->scene, sizeof map.scene, map.scene)
-            ? check(path, &map, error)
-            : dig_yaml_refuse(path, error, "scene: expected a shorter path");
-    if (status == DIG_OK) {
+    if (c->status == DIG_OK) {
         *(struct dig_curve_map *)into = map;
     }
-    return status;
 }
 
 enum dig_status dig_curve_map_read(const char *const path, struct dig_curve_map *const map,

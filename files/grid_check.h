@@ -5,18 +5,14 @@
 
 #include "files/grid_yaml.h"
 
-/// Axes, points, effects and names. DIG_EINVAL names file, line, key and what was expected.
-DIG_MUST_CHECK enum dig_status dig_grid_check(const char *path, const struct dig_grid *grid,
-                                              struct dig_error *error);
+/// Axes, points, effects and names.
+void dig_grid_check(const char *path, const struct dig_grid *grid, struct dig_conditions *c);
 
 /// A list at a key: ascending, within the range.
-DIG_MUST_CHECK enum dig_status dig_grid_check_values(const char *path, const char *list,
-                                                     size_t count, const double value[],
-                                                     double least, double most,
-                                                     struct dig_error *error);
+void dig_grid_check_values(const char *list, size_t count, const double value[], double least,
+                           double most, struct dig_conditions *c);
 
 /// A number of packings at a key.
-DIG_MUST_CHECK enum dig_status dig_grid_check_packings(const char *path, const char *key,
-                                                       size_t packings, struct dig_error *error);
+void dig_grid_check_packings(const char *key, size_t packings, struct dig_conditions *c);
 
 #endif // DIG_FILES_GRID_CHECK_H

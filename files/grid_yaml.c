@@ -80,71 +80,55 @@ static const cyaml_schema_field_t fields[] = {
 
 static const cyaml_schema_value_t schema = FILE_OF(grid_text, fields);
 
-static enum dig_status convert_effects(const char *const path, const struct grid_text *const text,
-                                       struct dig_grid *const grid, struct dig_error *const error)
+static void convert_effects(const struct grid_text *const text, struct dig_grid *const grid,
+                            struct dig_conditions *const c)
 {
     for (size_t i = 0; i < text->grid.effects; i++) {
         const struct effect_text *const from  = &text->effect[i];
         const int                       found = dig_effect_find(from->name);
-        if (found < 0 || found == DIG_EFFECT_UNLISTED ||
-            dig_effect_is_of_machine((enum dig_effect_id)found)) {
-            char             best[DIG_GUESS_SIZE];
-            struct dig_guess guess = dig_guess(from->name);
-            for (int e = DIG_EFFECT_COHESION; e < DIG_EFFECT_UNLISTED; e++) {
-                dig_guess_try(&guess, dig_effect_name((enum dig_effect_id)e));
-            }
-            return dig_yaml_refuse(path, error,
-                                   "effects[%zu].name: \"%s\", expected an effect of the soil%s", i,
-                                   from->name, dig_guess_text(&guess, "", best));
+        char                            best[DIG_GUESS_SIZE];
+        struct dig_guess                guess = dig_guess(from->name);
+        for (int e = DIG_EFFECT_COHESION; e < DIG_EFFECT_UNLISTED; e++) {
+            dig_guess_try(&guess, dig_effect_name((enum dig_effect_id)e));
         }
+        dig_require(c,
+                    found >= 0 && found != DIG_EFFECT_UNLISTED &&
+                        !dig_effect_is_of_machine((enum dig_effect_id)found),
+                    "effects[%zu].name: \"%s\", expected an effect of the soil%s", i, from->name,
+                    dig_guess_text(&guess, "", best));
         grid->effect[i]        = from->effect;
         grid->effect[i].effect = (enum dig_effect_id)found;
     }
-    return DIG_OK;
 }
 
 // One list of depths or attacks: ascending, within the range, the plain value among them.
-static enum dig_status check_list(const char *const path, const char *const list,
-                                  const size_t count, const double value[], const double plain,
-                                  const double least, const double most,
-                                  struct dig_error *const error)
+static void check_list(const char *const list, const size_t count, const double value[],
+                       const double plain, const double least, const double most,
+                       struct dig_conditions *const c)
 {
-    const enum dig_status status =
-        dig_grid_check_values(path, list, count, value, least, most, error);
+    dig_grid_check_values(list, count, value, least, most, c);
     bool has_plain = count == 0;
     for (size_t i = 0; i < count; i++) {
         has_plain = has_plain || !(value[i] < plain || value[i] > plain);
     }
-    return status != DIG_OK || has_plain
-               ? status
-               : dig_yaml_refuse(
-                     path, error,
-                     "%s: without %g, expected it among the values: the digs as the scene has them",
-                     list, plain);
+    dig_require(c, has_plain,
+                "%s: without %g, expected it among the values: the digs as the scene has them",
+                list, plain);
 }
 
-static enum dig_status check_approaches(const char *const path, const struct grid_text *const text,
-                                        struct dig_error *const error)
+static void check_approaches(const char *const path, const struct grid_text *const text,
+                             struct dig_conditions *const c)
 {
-    enum dig_status status = check_list(path, "depth", text->depths, text->depth, 1.0,
-                                        DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST, error);
-    if (status == DIG_OK) {
-        status = check_list(path, "attack_deg", text->attacks, text->attack_deg, 0.0, -45.0, 45.0,
-                            error);
-    }
+    check_list("depth", text->depths, text->depth, 1.0, DIG_APPROACH_DEPTH_LEAST,
+               DIG_APPROACH_DEPTH_MOST, c);
+    check_list("attack_deg", text->attacks, text->attack_deg, 0.0, -45.0, 45.0, c);
     const bool lists = text->depths + text->attacks > 0;
-    if (status == DIG_OK && lists && text->grid.effects > 0) {
-        return dig_yaml_refuse(path, error, "%s: beside effects, expected either",
-                               text->depths > 0 ? "depth" : "attack_deg");
+    dig_require(c, !lists || text->grid.effects == 0, "%s: beside effects, expected either",
+                text->depths > 0 ? "depth" : "attack_deg");
+    if (dig_yaml_line(path, "varied_packings") > 0) {
+        dig_require(c, lists, "varied_packings: without depth or attack_deg, expected one of them");
+        dig_grid_check_packings("varied_packings", text->grid.varied_packings, c);
     }
-    if (status == DIG_OK && dig_yaml_line(path, "varied_packings") > 0) {
-        return lists ? dig_grid_check_packings(path, "varied_packings", text->grid.varied_packings,
-                                               error)
-                     : dig_yaml_refuse(
-                           path, error,
-                           "varied_packings: without depth or attack_deg, expected one of them");
-    }
-    return status;
 }
 
 // The cross has one axis at a time, the product every combination.
@@ -168,8 +152,8 @@ static void convert_approaches(const struct grid_text *const text, struct dig_gr
     }
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     const struct grid_text *const text = loaded;
     struct dig_grid               grid = text->grid;
@@ -180,17 +164,14 @@ static enum dig_status take(const char *const path, cyaml_data_t *const loaded, 
         p->approach = dig_approach_normalized(&p->approach);
     }
     convert_approaches(text, &grid);
-    enum dig_status status = convert_effects(path, text, &grid, error);
-    if (status == DIG_OK) {
-        status = check_approaches(path, text, error);
+    convert_effects(text, &grid, c);
+    check_approaches(path, text, c);
+    if (c->status == DIG_OK) {
+        dig_grid_check(path, &grid, c);
     }
-    if (status == DIG_OK) {
-        status = dig_grid_check(path, &grid, error);
-    }
-    if (status == DIG_OK) {
+    if (c->status == DIG_OK) {
         *(struct dig_grid *)into = grid;
     }
-    return status;
 }
 
 enum dig_status dig_grid_read(const char *const path, struct dig_grid *const grid,

@@ -135,76 +135,61 @@ static void take_dig(const struct dig_text *const text, struct dig_identity_dig 
     }
 }
 
-// Refused when it is out of range, or an attack comes without a depth.
-static enum dig_status take_approach(const char *const path, const char *const key,
-                                     struct dig_approach *const approach,
-                                     struct dig_error *const    error)
+// No attack comes without a depth.
+static void take_approach(const char *const key, struct dig_approach *const approach,
+                          struct dig_conditions *const c)
 {
     const double attack_deg = approach->attack_rad;
     approach->attack_rad *= DIG_RAD_PER_DEG;
-    return is_approach(approach) && (approach->depth > 0.0 || fabs(attack_deg) <= 0.0)
-               ? DIG_OK
-               : dig_yaml_refuse(
-                     path, error,
-                     "%s: expected a depth of 0.2 to 3 with an attack of at most 45 deg either way",
-                     key);
+    dig_require(c, is_approach(approach) && (approach->depth > 0.0 || fabs(attack_deg) <= 0.0),
+                "%s: expected a depth of 0.2 to 3 with an attack of at most 45 deg either way",
+                key);
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
-    const struct identity_text *const text   = loaded;
-    struct dig_identity               read   = text->identity;
-    enum dig_status                   status = take_approach(path, "depth", &read.made, error);
-    status = status == DIG_OK ? take_approach(path, "matched_depth", &read.matched, error) : status;
-    if (status != DIG_OK) {
-        return status;
-    }
+    const struct identity_text *const text = loaded;
+    struct dig_identity               read = text->identity;
+    struct dig_match *const           m    = &read.match;
+    (void)path;
+    take_approach("depth", &read.made, c);
+    take_approach("matched_depth", &read.matched, c);
     if (!(read.matched.depth > 0.0)) {
         read.matched = read.made;
     }
-    struct dig_match *const m = &read.match;
-    m->valid                  = true;
-    m->weighted               = text->weighted_nearest != NULL ? 0 : -1;
-    m->samples = text->samples < DIG_MATCH_SAMPLES ? text->samples : DIG_MATCH_SAMPLES;
+    m->valid    = true;
+    m->weighted = text->weighted_nearest != NULL ? 0 : -1;
+    m->samples  = text->samples < DIG_MATCH_SAMPLES ? text->samples : DIG_MATCH_SAMPLES;
     memcpy(m->sample, text->sample, m->samples * sizeof m->sample[0]);
     if (text->weighted_nearest != NULL) {
         read.weighted_nearest = *text->weighted_nearest;
+        dig_require(c, is_gravel(&read.weighted_nearest) && m->weighted_distance >= 0.0,
+                    "weighted_nearest: no gravel, expected friction and rolling >= 0, density > 0, "
+                    "with a weighted_distance >= 0");
     } else {
         m->weighted_distance = (double)NAN;
     }
-    if (m->weighted >= 0 && !(is_gravel(&read.weighted_nearest) && m->weighted_distance >= 0.0)) {
-        return dig_yaml_refuse(path, error,
-                               "weighted_nearest: no gravel, expected friction and rolling >= 0, "
-                               "density > 0, with a weighted_distance >= 0");
-    }
     for (size_t i = 0; i < text->samples; i++) {
-        if (!is_gravel(&text->sample[i])) {
-            return dig_yaml_refuse(
-                path, error,
-                "samples: the %zu-th is no gravel, expected friction and rolling >= 0, density > 0",
-                i + 1);
-        }
+        dig_require(
+            c, is_gravel(&text->sample[i]),
+            "samples: the %zu-th is no gravel, expected friction and rolling >= 0, density > 0",
+            i + 1);
     }
-    if (!dig_name_ok(read.trajectory)) {
-        return dig_yaml_refuse(path, error, "trajectory: \"%s\", expected " DIG_NAME_RULE,
-                               read.trajectory);
-    }
+    dig_require(c, dig_name_ok(read.trajectory), "trajectory: \"%s\", expected " DIG_NAME_RULE,
+                read.trajectory);
     for (size_t i = 0; i < read.recorded; i++) {
         take_dig(&text->recorded[i], &read.recording[i]);
-        if (!dig_name_ok(read.recording[i].trajectory) || !is_dig(&read.recording[i].seen)) {
-            return dig_yaml_refuse(path, error,
-                                   "recorded: the %zu-th is no dig, expected a name, 0 <= first < "
-                                   "last <= 1, finite moments and forces, sigmas >= 0",
-                                   i + 1);
-        }
+        dig_require(c, dig_name_ok(read.recording[i].trajectory) && is_dig(&read.recording[i].seen),
+                    "recorded: the %zu-th is no dig, expected a name, 0 <= first < last <= 1, "
+                    "finite moments and forces, sigmas >= 0",
+                    i + 1);
     }
-    if (!is_gravel(&m->gravel)) {
-        return dig_yaml_refuse(
-            path, error, "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
+    dig_require(c, is_gravel(&m->gravel),
+                "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
+    if (c->status == DIG_OK) {
+        *(struct dig_identity *)into = read;
     }
-    *(struct dig_identity *)into = read;
-    return DIG_OK;
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,

@@ -26,28 +26,22 @@ static const cyaml_schema_field_t fields[] = {
 
 static const cyaml_schema_value_t schema = FILE_OF(dig_job_plan, fields);
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     const struct dig_job_plan *const plan = loaded;
+    (void)path;
     // It stands in command lines and is what a queue is asked for.
-    if (!dig_name_ok(plan->job)) {
-        return dig_yaml_refuse(path, error, "job: \"%s\", expected " DIG_NAME_RULE, plan->job);
+    dig_require(c, dig_name_ok(plan->job), "job: \"%s\", expected " DIG_NAME_RULE, plan->job);
+    dig_require(c, plan->tasks >= 1 && plan->tasks <= DIG_JOB_TASKS_MAX,
+                "tasks: %zu, expected 1 to %d", plan->tasks, DIG_JOB_TASKS_MAX);
+    dig_require(c, plan->beds >= plan->tasks && plan->beds <= BEDS_MAX,
+                "beds: %zu, expected %zu (the tasks) to %d", plan->beds, plan->tasks, BEDS_MAX);
+    dig_require(c, plan->trajectories >= 1 && plan->trajectories <= DIG_TRAJECTORY_MAX,
+                "trajectories: %zu, expected 1 to %d", plan->trajectories, DIG_TRAJECTORY_MAX);
+    if (c->status == DIG_OK) {
+        *(struct dig_job_plan *)into = *plan;
     }
-    if (plan->tasks < 1 || plan->tasks > DIG_JOB_TASKS_MAX) {
-        return dig_yaml_refuse(path, error, "tasks: %zu, expected 1 to %d", plan->tasks,
-                               DIG_JOB_TASKS_MAX);
-    }
-    if (plan->beds < plan->tasks || plan->beds > BEDS_MAX) {
-        return dig_yaml_refuse(path, error, "beds: %zu, expected %zu (the tasks) to %d", plan->beds,
-                               plan->tasks, BEDS_MAX);
-    }
-    if (plan->trajectories < 1 || plan->trajectories > DIG_TRAJECTORY_MAX) {
-        return dig_yaml_refuse(path, error, "trajectories: %zu, expected 1 to %d",
-                               plan->trajectories, DIG_TRAJECTORY_MAX);
-    }
-    *(struct dig_job_plan *)into = *plan;
-    return DIG_OK;
 }
 
 enum dig_status dig_job_plan_read(const char *const path, struct dig_job_plan *const plan,

@@ -153,8 +153,8 @@ static const cyaml_schema_field_t machine_fields[] = {
 };
 static const cyaml_schema_value_t schema = FILE_OF(machine_text, machine_fields);
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     struct dig_machine machine = ((const struct machine_text *)loaded)->machine;
     for (int j = 0; j < DIG_JOINTS; j++) {
@@ -167,14 +167,13 @@ static enum dig_status take(const char *const path, cyaml_data_t *const loaded, 
         machine.tolerance = machine.sensor.fitted ? machined : measured;
     }
 
-    struct dig_error found  = { "" };
-    enum dig_status  status = dig_machine_check(&machine, &found);
-    status                  = status == DIG_OK ? dig_geometry_check(&machine, &found) : status;
-    if (status != DIG_OK) {
-        return dig_yaml_refuse_checked(path, status, &found, error);
+    c->status = dig_machine_check(&machine, c->error);
+    if (c->status == DIG_OK) {
+        c->status = dig_geometry_check(&machine, c->error);
     }
-    *(struct dig_machine *)into = machine;
-    return DIG_OK;
+    if (c->status == DIG_OK) {
+        *(struct dig_machine *)into = machine;
+    }
 }
 
 enum dig_status dig_machine_read(const char *const path, struct dig_machine *const machine,

@@ -103,36 +103,25 @@ static double number_of(const double *const number)
     return number != NULL ? *number : (double)NAN;
 }
 
-static enum dig_status take_effect(const char *const path, const struct effect_text *const text,
-                                   struct dig_model_effect *const out,
-                                   struct dig_error *const        error)
+static void take_effect(const struct effect_text *const text, struct dig_model_effect *const out,
+                        struct dig_conditions *const c)
 {
     const int id = dig_effect_find(text->name);
-    if (id < 0) {
-        return dig_yaml_refuse(
-            path, error, "effects.name: \"%s\", expected the name of an effect of the catalogue",
-            text->name);
-    }
-    *out        = text->effect;
-    out->effect = (enum dig_effect_id)id;
-    if (!(out->probability >= 0.0 && out->probability <= 1.0)) {
-        return dig_yaml_refuse(path, error, "effects.probability: %g, expected 0 to 1",
-                               out->probability);
-    }
+    *out         = text->effect;
+    out->effect  = (enum dig_effect_id)id;
+    dig_require(c, id >= 0, "effects.name: \"%s\", expected the name of an effect of the catalogue",
+                text->name);
+    dig_require(c, out->probability >= 0.0 && out->probability <= 1.0,
+                "effects.probability: %g, expected 0 to 1", out->probability);
     for (size_t p = 0; p < out->parameters; p++) {
         const struct dig_model_parameter *const from = &out->parameter[p];
-        if (!dig_name_ok(from->name)) {
-            return dig_yaml_refuse(path, error,
-                                   "effects.parameters: \"%s\" of %s, expected " DIG_NAME_RULE,
-                                   from->name, text->name);
-        }
-        if (!(isfinite(from->value) && isfinite(from->low) && isfinite(from->high))) {
-            return dig_yaml_refuse(
-                path, error, "effects.parameters: %s of %s is not finite, expected three numbers",
-                from->name, text->name);
-        }
+        dig_require(c, dig_name_ok(from->name),
+                    "effects.parameters: \"%s\" of %s, expected " DIG_NAME_RULE, from->name,
+                    text->name);
+        dig_require(c, isfinite(from->value) && isfinite(from->low) && isfinite(from->high),
+                    "effects.parameters: %s of %s is not finite, expected three numbers",
+                    from->name, text->name);
     }
-    return DIG_OK;
 }
 
 static int channel_of(const char *const name)
@@ -145,68 +134,61 @@ static int channel_of(const char *const name)
     return -1;
 }
 
-static enum dig_status take_unlisted(const char *const path, const struct unlisted_text *const text,
-                                     struct dig_model_unlisted **const out,
-                                     struct dig_error *const           error)
+static struct dig_model_unlisted *take_unlisted(const struct unlisted_text *const text,
+                                                struct dig_conditions *const      c)
 {
     struct dig_model_unlisted *const made = calloc(1, sizeof *made);
     if (made == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%s: out of memory", path);
+        c->status = dig_error_set(c->error, DIG_ENOMEM, "out of memory");
+        return NULL;
     }
     memcpy(made->depends_on, text->depends_on, sizeof made->depends_on);
-    for (size_t i = 0; i < text->curves; i++) {
+    for (size_t i = 0; i < text->curves && c->status == DIG_OK; i++) {
         const struct curve_text *const from    = &text->curve[i];
         const int                      channel = channel_of(from->channel);
         bool                           finite  = true;
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             finite = finite && isfinite(from->share[k]) && fabs(from->share[k]) < 1e6;
         }
-        if (from->trajectory >= DIG_TRAJECTORY_MAX || channel < 0 || !finite) {
-            free(made);
-            return dig_yaml_refuse(
-                path, error,
-                "unlisted.curves: curve %zu: trajectory %u, channel \"%s\"; expected an index "
-                "below %d, My_Nm, Fx_N or Fz_N, and finite shares",
-                i + 1, from->trajectory, from->channel, DIG_TRAJECTORY_MAX);
-        }
-        for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        dig_require(c, from->trajectory < DIG_TRAJECTORY_MAX && channel >= 0 && finite,
+                    "unlisted.curves: curve %zu: trajectory %u, channel \"%s\"; expected an index "
+                    "below %d, My_Nm, Fx_N or Fz_N, and finite shares",
+                    i + 1, from->trajectory, from->channel, DIG_TRAJECTORY_MAX);
+        for (size_t k = 0; k < DIG_CURVE_POINTS && c->status == DIG_OK; k++) {
             made->share[from->trajectory][channel][k] = (float)from->share[k];
         }
     }
-    *out = made;
-    return DIG_OK;
+    return made;
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     const struct model_text *const text = loaded;
-    if (text->version != 1) {
-        return dig_yaml_refuse(path, error, "version: %u, expected 1", text->version);
-    }
-    struct dig_model m = text->model;
-    m.noise_floor      = number_of(text->noise_floor);
-    m.error_before     = number_of(text->error_before);
-    m.error_after      = number_of(text->error_after);
+    struct dig_model               m    = text->model;
+    (void)path;
+    dig_require(c, text->version == 1, "version: %u, expected 1", text->version);
+    m.noise_floor  = number_of(text->noise_floor);
+    m.error_before = number_of(text->error_before);
+    m.error_after  = number_of(text->error_after);
     for (int a = 0; a < DIG_AXES; a++) {
-        if (!(isfinite(m.gravel.value[a]) && m.gravel.value[a] >= 0.0)) {
-            return dig_yaml_refuse(path, error, "gravel: is no gravel, expected numbers >= 0");
-        }
+        dig_require(c, isfinite(m.gravel.value[a]) && m.gravel.value[a] >= 0.0,
+                    "gravel: is no gravel, expected numbers >= 0");
     }
-    enum dig_status status = DIG_OK;
-    for (size_t e = 0; e < m.effects && status == DIG_OK; e++) {
-        status = take_effect(path, &text->effect[e], &m.effect[e], error);
+    for (size_t e = 0; e < m.effects; e++) {
+        take_effect(&text->effect[e], &m.effect[e], c);
     }
-    for (size_t e = 0; e < m.not_applied && status == DIG_OK; e++) {
-        status = take_effect(path, &text->left_out[e], &m.left_out[e], error);
+    for (size_t e = 0; e < m.not_applied; e++) {
+        take_effect(&text->left_out[e], &m.left_out[e], c);
     }
-    if (status == DIG_OK && text->unlisted != NULL) {
-        status = take_unlisted(path, text->unlisted, &m.unlisted, error);
+    if (c->status == DIG_OK && text->unlisted != NULL) {
+        m.unlisted = take_unlisted(text->unlisted, c);
     }
-    if (status == DIG_OK) {
+    if (c->status == DIG_OK) {
         *(struct dig_model *)into = m;
+    } else {
+        free(m.unlisted);
     }
-    return status;
 }
 
 enum dig_status dig_model_read(const char *const path, struct dig_model *const model,

@@ -109,21 +109,19 @@ static struct dig_scene convert(const struct scene_text *const text)
     return scene;
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
-    const struct scene_text *const text   = loaded;
-    struct dig_scene               scene  = convert(text);
-    struct dig_error               found  = { "" };
-    enum dig_status                status = dig_bed_convert(&text->bed, &scene.bed, &found);
-    if (status == DIG_OK) {
-        status = dig_scene_check(&scene, &found);
+    const struct scene_text *const text  = loaded;
+    struct dig_scene               scene = convert(text);
+    (void)path;
+    c->status = dig_bed_convert(&text->bed, &scene.bed, c->error);
+    if (c->status == DIG_OK) {
+        c->status = dig_scene_check(&scene, c->error);
     }
-    if (status != DIG_OK) {
-        return dig_yaml_refuse_checked(path, status, &found, error);
+    if (c->status == DIG_OK) {
+        *(struct dig_scene *)into = scene;
     }
-    *(struct dig_scene *)into = scene;
-    return DIG_OK;
 }
 
 enum dig_status dig_scene_read(const char *const path, struct dig_scene *const scene,

@@ -78,22 +78,6 @@ static enum dig_status load(const char *const path, const cyaml_schema_value_t *
     return status;
 }
 
-enum dig_status dig_yaml_read(const char *const path, const cyaml_schema_value_t *const schema,
-                              enum dig_status (*const take)(const char *, cyaml_data_t *, void *,
-                                                            struct dig_error *),
-                              void *const into, struct dig_error *const error)
-{
-    assert(path != NULL && schema != NULL && into != NULL);
-    const cyaml_config_t config = { .mem_fn = cyaml_mem, .flags = CYAML_CFG_DEFAULT };
-    cyaml_data_t        *data   = NULL;
-    enum dig_status      status = load(path, schema, &data, error);
-    if (status == DIG_OK) {
-        status = take(path, data, into, error);
-        (void)cyaml_free(&config, schema, data, 0);
-    }
-    return status;
-}
-
 // The line of the value at key, or of the deepest mapping on the way to it.
 static int nearest_line(const char *const path, const char *const key, int *const found)
 {
@@ -114,6 +98,36 @@ static int nearest_line(const char *const path, const char *const key, int *cons
     return line;
 }
 
+// text: of a refusal, which begins with a key.
+static enum dig_status tell_line(const char *const path, const enum dig_status status,
+                                 const char *const text, struct dig_error *const error)
+{
+    char key[128];
+    (void)snprintf(key, sizeof key, "%.*s", (int)strcspn(text, ": "), text);
+    int       at   = 0;
+    const int line = nearest_line(path, key, &at);
+    return dig_error_set(error, status, "%s:%d: %.400s", path, line > 0 ? line : 1, text);
+}
+
+enum dig_status dig_yaml_read(const char *const path, const cyaml_schema_value_t *const schema,
+                              void (*const take)(const char *, cyaml_data_t *, void *,
+                                                 struct dig_conditions *),
+                              void *const into, struct dig_error *const error)
+{
+    assert(path != NULL && schema != NULL && into != NULL);
+    const cyaml_config_t config = { .mem_fn = cyaml_mem, .flags = CYAML_CFG_DEFAULT };
+    cyaml_data_t        *data   = NULL;
+    enum dig_status      status = load(path, schema, &data, error);
+    if (status == DIG_OK) {
+        struct dig_error      found = { "" };
+        struct dig_conditions c     = { .error = &found };
+        take(path, data, into, &c);
+        status = c.status != DIG_OK ? tell_line(path, c.status, found.text, error) : DIG_OK;
+        (void)cyaml_free(&config, schema, data, 0);
+    }
+    return status;
+}
+
 int dig_yaml_line(const char *const path, const char *const key)
 {
     assert(path != NULL && key != NULL);
@@ -130,20 +144,7 @@ enum dig_status dig_yaml_refuse(const char *const path, struct dig_error *const 
     va_start(args, format);
     (void)vsnprintf(what.text, sizeof what.text, format, args);
     va_end(args);
-    return dig_yaml_refuse_checked(path, DIG_EINVAL, &what, error);
-}
-
-enum dig_status dig_yaml_refuse_checked(const char *const path, const enum dig_status status,
-                                        const struct dig_error *const found,
-                                        struct dig_error *const       error)
-{
-    assert(path != NULL && found != NULL);
-    const struct dig_error what = *found;
-    char                   key[128];
-    (void)snprintf(key, sizeof key, "%.*s", (int)strcspn(what.text, ": "), what.text);
-    int       at   = 0;
-    const int line = nearest_line(path, key, &at);
-    return dig_error_set(error, status, "%s:%d: %.400s", path, line > 0 ? line : 1, what.text);
+    return tell_line(path, DIG_EINVAL, what.text, error);
 }
 
 enum dig_status dig_yaml_tell_namer(const char *const path, const char *const key,

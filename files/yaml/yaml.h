@@ -7,15 +7,14 @@
 
 #include <cyaml/cyaml.h>
 
-/// Loads path by schema and hands it to take(path, loaded, into, error), which may change what was
-/// loaded, and is to write *into on success only. Unknown keys, missing keys and values of the
-/// wrong type are refused; *error reads "FILE:LINE: KEY: what was found, expected …". Returns what
-/// take() does.
-DIG_MUST_CHECK enum dig_status
-dig_yaml_read(const char *path, const cyaml_schema_value_t *schema,
-              enum dig_status (*take)(const char *path, cyaml_data_t *loaded, void *into,
-                                      struct dig_error *error),
-              void *into, struct dig_error *error);
+/// Loads path by schema and hands it to take(path, loaded, into, c), which may change what was
+/// loaded, and is to write *into only where all its conditions hold. Their words begin with the
+/// dotted key of a value ("parts[3].weight_kg: %g, expected …"). Unknown keys, missing keys and
+/// values of the wrong type are refused; *error reads "FILE:LINE: KEY: what was found, expected …".
+DIG_MUST_CHECK enum dig_status dig_yaml_read(const char *path, const cyaml_schema_value_t *schema,
+                                             void (*take)(const char *path, cyaml_data_t *loaded,
+                                                          void *into, struct dig_conditions *c),
+                                             void *into, struct dig_error *error);
 
 /// The line on which the value at dotted key ("cylinders.boom.bore_m", "recordings[2].file")
 /// stands, or 0 when it is not there: so that a check made after loading can name the line too.
@@ -35,11 +34,6 @@ struct dig_yaml_range {
 /// at: the key they stand in, "messages[3]"; "": none.
 void dig_yaml_check_ranges(const char *at, size_t count, const struct dig_yaml_range range[],
                            struct dig_conditions *c);
-
-/// Passes on what a check in core/ found, likewise. Returns status. found and error may be the same
-/// struct.
-enum dig_status dig_yaml_refuse_checked(const char *path, enum dig_status status,
-                                        const struct dig_error *found, struct dig_error *error);
 
 /// Of a file that could not be read, which is DIG_EIO: *error begins with FILE:LINE: KEY: of the
 /// key that names it. Returns status, and leaves *error with any other.

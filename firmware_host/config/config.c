@@ -80,15 +80,13 @@ static struct dig_config defaults(void)
     };
 }
 
-// What is being read, into which settings, and where errors go.
+// What is being read, into which settings, and what is found wrong with it.
 struct work {
     const char                   *path;
     const struct dig_config_text *text;
     struct dig_config            *config;
-    struct dig_error             *error;
+    struct dig_conditions        *c;
 };
-
-#define REFUSE(work, ...) dig_yaml_refuse((work)->path, (work)->error, __VA_ARGS__)
 
 static bool is_given(const struct work *const work, const char *const key)
 {
@@ -101,7 +99,7 @@ static bool is_passed_over(const struct work *const work, const char *const key)
     return strncmp(key, "input.", 6) == 0 && strncmp(key, part, strlen(part)) != 0;
 }
 
-static enum dig_status take_numbers(const struct work *const work)
+static void take_numbers(const struct work *const work)
 {
     for (size_t i = 0; i < CYAML_ARRAY_LEN(numbers); i++) {
         const struct number *const n     = &numbers[i];
@@ -111,29 +109,24 @@ static enum dig_status take_numbers(const struct work *const work)
         if (is_passed_over(work, n->key) || !is_given(work, n->key)) {
             continue;
         }
-        if (!(value >= n->least && value <= n->most)) {
-            return REFUSE(work,
-                          n->whole ? "%s: %.0f, expected %.0f … %.0f" : "%s: %g, expected %g … %g",
-                          n->key, value, n->least, n->most);
-        }
+        dig_require(work->c, value >= n->least && value <= n->most,
+                    n->whole ? "%s: %.0f, expected %.0f … %.0f" : "%s: %g, expected %g … %g",
+                    n->key, value, n->least, n->most);
         if (n->whole) {
             *(int *)to = (int)value;
         } else {
             *(double *)to = n->factor > 0.0 ? value * n->factor : 1.0 / value;
         }
     }
-    return DIG_OK;
 }
 
 // from: NULL where absent.
-static enum dig_status take_text(const struct work *const work, const char *const key,
-                                 const char *const from, const size_t size, char to[])
+static void take_text(const struct work *const work, const char *const key, const char *const from,
+                      const size_t size, char to[])
 {
     const int length = from != NULL ? snprintf(to, size, "%s", from) : 0;
-    if (length < 0 || (size_t)length >= size) {
-        return REFUSE(work, "%s: %d characters, expected at most %zu", key, length, size - 1);
-    }
-    return DIG_OK;
+    dig_require(work->c, length >= 0 && (size_t)length < size,
+                "%s: %d characters, expected at most %zu", key, length, size - 1);
 }
 
 // Of LCM's own kinds those that publish: a multicast group, or a log file. Of a network that is
@@ -158,7 +151,7 @@ static bool is_lcm_url(const char *const text)
            (inet_pton(AF_INET, address, &group) == 1 && IN_MULTICAST(ntohl(group.s_addr)));
 }
 
-static enum dig_status take_texts(const struct work *const work)
+static void take_texts(const struct work *const work)
 {
     const struct dig_config_text *const text   = work->text;
     struct dig_config *const            config = work->config;
@@ -176,110 +169,105 @@ static enum dig_status take_texts(const struct work *const work)
         { "match.state", text->match_state, &config->match_state },
     };
     for (size_t i = 0; i < CYAML_ARRAY_LEN(path); i++) {
-        if (path[i].from != NULL && !is_passed_over(work, path[i].key) &&
-            !dig_path_beside(work->path, path[i].from, sizeof path[i].to->text, path[i].to->text)) {
-            return REFUSE(work, "%s: too long a path", path[i].key);
+        if (path[i].from != NULL && !is_passed_over(work, path[i].key)) {
+            dig_require(work->c,
+                        dig_path_beside(work->path, path[i].from, sizeof path[i].to->text,
+                                        path[i].to->text),
+                        "%s: too long a path", path[i].key);
         }
     }
-    if (text->lcm_url != NULL && !is_lcm_url(text->lcm_url)) {
-        return REFUSE(work, "lcm.url: \"%.60s\", expected udpm://GROUP:PORT with a multicast group",
-                      text->lcm_url);
-    }
-    const enum dig_status status =
-        take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
-    return status == DIG_OK
-               ? take_text(work, "lcm.url", text->lcm_url, sizeof config->lcm_url, config->lcm_url)
-               : status;
+    dig_require(work->c, text->lcm_url == NULL || is_lcm_url(text->lcm_url),
+                "lcm.url: \"%.60s\", expected udpm://GROUP:PORT with a multicast group",
+                text->lcm_url != NULL ? text->lcm_url : "");
+    take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
+    take_text(work, "lcm.url", text->lcm_url, sizeof config->lcm_url, config->lcm_url);
 }
 
 // "127.0.0.1:1502" or "[::1]:1502"
-static enum dig_status take_address(const struct work *const work, const char *const text,
-                                    struct dig_modbus_address *const address)
+static void take_address(const struct work *const work, const char *const text,
+                         struct dig_modbus_address *const address)
 {
     const char *const colon  = strrchr(text, ':');
     const size_t      length = colon != NULL ? (size_t)(colon - text) : 0;
     char             *end    = NULL;
     const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
-    if (length == 0 || length >= sizeof address->host || end == NULL || end == colon + 1 ||
-        *end != '\0' || port < 1 || port > 65535) {
-        return REFUSE(work, "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
+    const bool        is     = length > 0 && length < sizeof address->host && end != NULL &&
+                    end != colon + 1 && *end == '\0' && port >= 1 && port <= 65535;
+    dig_require(work->c, is, "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
+    if (is) {
+        const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
+        memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
+        address->host[length - 2 * (size_t)brackets] = '\0';
+        address->port                                = (int)port;
     }
-    const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
-    memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
-    address->host[length - 2 * (size_t)brackets] = '\0';
-    address->port                                = (int)port;
-    return DIG_OK;
 }
 
-static enum dig_status take_parity(const struct work *const work, const char *const text,
-                                   struct dig_modbus_address *const address)
+static void take_parity(const struct work *const work, const char *const text,
+                        struct dig_modbus_address *const address)
 {
     static const char *const words[] = { "none", "even", "odd" };
-    for (size_t i = 0; i < CYAML_ARRAY_LEN(words); i++) {
-        if (strcmp(text, words[i]) == 0) {
-            address->parity = "NEO"[i];
-            return DIG_OK;
-        }
+    size_t                   i       = 0;
+    while (i < CYAML_ARRAY_LEN(words) && strcmp(text, words[i]) != 0) {
+        i++;
     }
-    return REFUSE(work, "input.modbus.parity: \"%.20s\", expected none, even or odd", text);
+    dig_require(work->c, i < CYAML_ARRAY_LEN(words),
+                "input.modbus.parity: \"%.20s\", expected none, even or odd", text);
+    address->parity = "NEO"[i];
 }
 
-static enum dig_status take_server(const struct work *const work)
+static void take_server(const struct work *const work)
 {
     const struct dig_config_text *const text    = work->text;
     struct dig_modbus_address *const    address = &work->config->modbus;
     const bool                          tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
     const char *const                   key = tcp ? "input.modbus.address" : "input.modbus.device";
-    if ((tcp ? text->address : text->device) == NULL) {
-        return REFUSE(work, "%s: missing, expected %s", key, tcp ? "HOST:PORT" : "a serial device");
+    const char *const                   at  = tcp ? text->address : text->device;
+    dig_require(work->c, at != NULL, "%s: missing, expected %s", key,
+                tcp ? "HOST:PORT" : "a serial device");
+    if (at != NULL && tcp) {
+        take_address(work, at, address);
+    } else {
+        take_text(work, key, at, sizeof address->device, address->device);
     }
-    const enum dig_status status =
-        tcp ? take_address(work, text->address, address)
-            : take_text(work, key, text->device, sizeof address->device, address->device);
-    return status == DIG_OK && text->parity != NULL ? take_parity(work, text->parity, address)
-                                                    : status;
+    if (text->parity != NULL) {
+        take_parity(work, text->parity, address);
+    }
 }
 
-static enum dig_status take_input(const struct work *const work)
+static void take_input(const struct work *const work)
 {
     struct dig_config *const config   = work->config;
-    enum dig_status          status   = DIG_OK;
     double                   sample_s = config->modbus.poll_s;
-    if (!is_given(work, parts[config->kind])) {
-        return REFUSE(work, "%s: missing, expected the settings of %s", parts[config->kind],
-                      dig_config_kinds[config->kind].str);
-    }
+    dig_require(work->c, is_given(work, parts[config->kind]),
+                "%s: missing, expected the settings of %s", parts[config->kind],
+                dig_config_kinds[config->kind].str);
     switch (config->kind) {
     case DIG_INPUT_CAN:
         sample_s = 0.01; // the cycle of pressures and angles
-        status   = take_text(work, "input.can.interface", work->text->interface,
-                             sizeof config->can_interface, config->can_interface);
+        take_text(work, "input.can.interface", work->text->interface, sizeof config->can_interface,
+                  config->can_interface);
         break;
     case DIG_INPUT_MODBUS_TCP:
-    case DIG_INPUT_MODBUS_RTU: status = take_server(work); break;
+    case DIG_INPUT_MODBUS_RTU: take_server(work); break;
     case DIG_INPUT_REPLAY:
         sample_s = 0.005; // what digrig records at
-        if (is_given(work, "time_scale")) {
-            return REFUSE(work,
-                          "time_scale: given with a replay, expected input.replay.speed alone");
-        }
+        dig_require(work->c, !is_given(work, "time_scale"),
+                    "time_scale: given with a replay, expected input.replay.speed alone");
         config->time_scale = config->replay_speed;
         break;
     }
     if (!is_given(work, "estimator.sample_s")) {
         config->estimator.tick_s = sample_s;
     }
-    return status == DIG_OK && config->estimator.tick_s > DIG_TICK_MOST_s
-               ? REFUSE(work,
-                        "estimator.sample_s: missing, expected with input.modbus.poll_Hz below 10")
-               : status;
+    dig_require(work->c, config->estimator.tick_s <= DIG_TICK_MOST_s,
+                "estimator.sample_s: missing, expected with input.modbus.poll_Hz below 10");
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     struct dig_config              config = defaults();
-    const struct work              work   = { path, loaded, &config, error };
+    const struct work              work   = { path, loaded, &config, c };
     const struct dig_config *const given  = &work.text->config;
 
     config.kind                  = given->kind;
@@ -289,13 +277,12 @@ static enum dig_status take(const char *const path, cyaml_data_t *const loaded, 
     if (is_given(&work, "realtime.lock_memory")) {
         config.realtime.lock_memory = given->realtime.lock_memory;
     }
-    enum dig_status status = take_numbers(&work);
-    status                 = status == DIG_OK ? take_texts(&work) : status;
-    status                 = status == DIG_OK ? take_input(&work) : status;
-    if (status == DIG_OK) {
+    take_numbers(&work);
+    take_texts(&work);
+    take_input(&work);
+    if (c->status == DIG_OK) {
         *(struct dig_config *)into = config;
     }
-    return status;
 }
 
 enum dig_status dig_config_read(const char *const path, struct dig_config *const config,

@@ -219,21 +219,18 @@ static void read_map(const struct dig_config_map_work *const work,
     }
 }
 
-static enum dig_status take(const char *const path, cyaml_data_t *const loaded, void *const into,
-                            struct dig_error *const error)
+static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+                 struct dig_conditions *const c)
 {
     const struct dig_config_map_work *const asked = into;
     const struct dig_map_text *const        text  = loaded;
-    struct dig_error                        found = { "" };
-    struct dig_conditions                   c     = { .error = &found };
     struct dig_signal_map                   map   = text->map;
-    const struct dig_config_map_work        work  = { asked->dbc, &map, &c };
+    const struct dig_config_map_work        work  = { asked->dbc, &map, c };
+    (void)path;
     read_map(&work, text);
-    if (c.status != DIG_OK) {
-        return dig_yaml_refuse_checked(path, c.status, &found, error);
+    if (c->status == DIG_OK) {
+        *asked->map = map;
     }
-    *asked->map = map;
-    return DIG_OK;
 }
 
 enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc *const dbc,
