@@ -11,11 +11,13 @@ static bool is_close(const double a, const double b, const double size)
     return fabs(a - b) <= DIG_SIMILAR * size;
 }
 
-static enum dig_status differs(const char *const key, const double found, const double expected,
-                               struct dig_error *const error)
+// size: of both, where each is drawn at its own.
+static void require_close(struct dig_conditions *const c, const char *const key, const double found,
+                          const double expected, const double size)
 {
-    return dig_error_set(error, DIG_EINVAL, "%s: %.4g, expected %.4g within %.0f %%", key, found,
-                         expected, 100.0 * DIG_SIMILAR);
+    dig_require(c, is_close(found / size, expected, expected),
+                "%s: %.4g, expected %.4g within %.0f %%", key, found, expected * size,
+                100.0 * DIG_SIMILAR);
 }
 
 double dig_scene_scale(const struct dig_scene *const scene, const struct dig_scene *const other)
@@ -51,49 +53,33 @@ static double off_outline_m(const struct dig_bucket *const a, const double size,
     return most_m;
 }
 
-static enum dig_status compare_buckets(const struct dig_scene *const scene,
-                                       const struct dig_scene *const other, const double scale,
-                                       struct dig_error *const error)
+static void compare_buckets(const struct dig_scene *const scene,
+                            const struct dig_scene *const other, const double scale,
+                            struct dig_conditions *const c)
 {
     const struct dig_bucket *const a = &scene->bucket;
     const struct dig_bucket *const b = &other->bucket;
-    if (!is_close(a->width_m / scale, b->width_m, b->width_m)) {
-        return differs("bucket.width_m", a->width_m, b->width_m * scale, error);
-    }
+    require_close(c, "bucket.width_m", a->width_m, b->width_m, scale);
     const double off_m = fmax(off_outline_m(a, 1.0 / scale, b), off_outline_m(b, scale, a) / scale);
     const double share = off_m / dig_scene_tooth_m(other);
-    return share <= DIG_SIMILAR
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL,
-                               "bucket.profile_m: an outline %.0f %% of the bucket's length off, "
-                               "expected at most %.0f %%",
-                               100.0 * share, 100.0 * DIG_SIMILAR);
+    dig_require(c, share <= DIG_SIMILAR,
+                "bucket.profile_m: an outline %.0f %% of the bucket's length off, expected at most "
+                "%.0f %%",
+                100.0 * share, 100.0 * DIG_SIMILAR);
 }
 
-static enum dig_status compare_boxes(const struct dig_scene *const scene,
-                                     const struct dig_scene *const other, const double scale,
-                                     struct dig_error *const error)
+static void compare_boxes(const struct dig_scene *const scene, const struct dig_scene *const other,
+                          const double scale, struct dig_conditions *const c)
 {
     const struct dig_box *const a = &scene->box;
     const struct dig_box *const b = &other->box;
-    const struct {
-        const char *key;
-        double      found, expected; // each at its own size
-    } length[] = {
-        { "box_m.x: length", a->x_max_m - a->x_min_m, b->x_max_m - b->x_min_m },
-        { "box_m.y: width", a->y_max_m - a->y_min_m, b->y_max_m - b->y_min_m },
-        { "box_m.z: depth", a->z_max_m - a->z_min_m, b->z_max_m - b->z_min_m },
-    };
-    for (size_t i = 0; i < sizeof length / sizeof length[0]; i++) {
-        if (!is_close(length[i].found / scale, length[i].expected, length[i].expected)) {
-            return differs(length[i].key, length[i].found, length[i].expected * scale, error);
-        }
-    }
-    return scene->bed.periodic_y == other->bed.periodic_y
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL, "bed.periodic_y: %s, expected %s",
-                               scene->bed.periodic_y ? "no walls in y" : "walls in y",
-                               other->bed.periodic_y ? "none" : "walls");
+    require_close(c, "box_m.x: length", a->x_max_m - a->x_min_m, b->x_max_m - b->x_min_m, scale);
+    require_close(c, "box_m.y: width", a->y_max_m - a->y_min_m, b->y_max_m - b->y_min_m, scale);
+    require_close(c, "box_m.z: depth", a->z_max_m - a->z_min_m, b->z_max_m - b->z_min_m, scale);
+    dig_require(c, scene->bed.periodic_y == other->bed.periodic_y,
+                "bed.periodic_y: %s, expected %s",
+                scene->bed.periodic_y ? "no walls in y" : "walls in y",
+                other->bed.periodic_y ? "none" : "walls");
 }
 
 static double stiffness(const struct dig_scene *const scene)
@@ -103,29 +89,22 @@ static double stiffness(const struct dig_scene *const scene)
                                            : sqrt(scene->material.characteristic_velocity_mps));
 }
 
-static enum dig_status compare_grains(const struct dig_scene *const scene,
-                                      const struct dig_scene *const other, const double scale,
-                                      struct dig_error *const error)
+static void compare_grains(const struct dig_scene *const scene, const struct dig_scene *const other,
+                           const double scale, struct dig_conditions *const c)
 {
     const struct dig_material *const a = &scene->material;
     const struct dig_material *const b = &other->material;
-    if (!is_close(scene->gravity_mps2, other->gravity_mps2, other->gravity_mps2)) {
-        return differs("gravity_mps2", scene->gravity_mps2, other->gravity_mps2, error);
-    }
-    if (!is_close(a->diameter_m / scale, b->diameter_m, b->diameter_m)) {
-        return differs("material.diameter_m", a->diameter_m, b->diameter_m * scale, error);
-    }
-    if (scene->laws.normal != other->laws.normal) {
-        return DIG_OK; // their stiffnesses say nothing of each other
-    }
+    require_close(c, "gravity_mps2", scene->gravity_mps2, other->gravity_mps2, 1.0);
+    require_close(c, "material.diameter_m", a->diameter_m, b->diameter_m, scale);
     const double velocity = scene->laws.normal == DIG_NORMAL_HERTZ ? 1.0 : pow(scale, 0.25);
     const double ratio    = stiffness(scene) / (stiffness(other) * scale * velocity);
-    return ratio <= STIFFNESS_FACTOR && ratio >= 1.0 / STIFFNESS_FACTOR
-               ? DIG_OK
-               : dig_error_set(error, DIG_EINVAL,
-                               "material.young_Pa: %.4g, contacts %.3g times as stiff as expected "
-                               "of %.4g scaled, within a factor of %.2f",
-                               a->young_Pa, ratio, b->young_Pa, STIFFNESS_FACTOR);
+    // Stiffnesses of two laws say nothing of each other.
+    dig_require(c,
+                scene->laws.normal != other->laws.normal ||
+                    (ratio <= STIFFNESS_FACTOR && ratio >= 1.0 / STIFFNESS_FACTOR),
+                "material.young_Pa: %.4g, contacts %.3g times as stiff as expected of %.4g scaled, "
+                "within a factor of %.2f",
+                a->young_Pa, ratio, b->young_Pa, STIFFNESS_FACTOR);
 }
 
 // Where the bucket is when this share of its path is done: from the end wall, from the ground.
@@ -139,10 +118,9 @@ static struct dig_pose pose_at(const struct dig_scene *const      scene,
     return pose;
 }
 
-static enum dig_status compare_ways(const struct dig_scene *const      scene,
-                                    const struct dig_trajectory *const t,
-                                    const struct dig_scene *const other, const double scale,
-                                    struct dig_error *const error)
+static void compare_ways(const struct dig_scene *const scene, const struct dig_trajectory *const t,
+                         const struct dig_scene *const other, const double scale,
+                         struct dig_conditions *const c)
 {
     enum { STEPS = 64 };
     const struct dig_trajectory *const own     = dig_scene_find(other, t->name);
@@ -151,15 +129,14 @@ static enum dig_status compare_ways(const struct dig_scene *const      scene,
         const double          progress = (double)i / STEPS;
         const struct dig_pose a        = pose_at(scene, t, progress);
         const struct dig_pose b        = pose_at(other, own, progress);
-        if (!is_close(a.x_m / scale, b.x_m, tooth_m) || !is_close(a.z_m / scale, b.z_m, tooth_m) ||
-            !is_close(a.theta_rad, b.theta_rad, 1.0)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "trajectory \"%s\": elsewhere when %.0f %% of the path is done, "
-                                 "expected within %.0f %% of the bucket's length",
-                                 t->name, 100.0 * progress, 100.0 * DIG_SIMILAR);
-        }
+        dig_require(c,
+                    is_close(a.x_m / scale, b.x_m, tooth_m) &&
+                        is_close(a.z_m / scale, b.z_m, tooth_m) &&
+                        is_close(a.theta_rad, b.theta_rad, 1.0),
+                    "trajectory \"%s\": elsewhere when %.0f %% of the path is done, expected "
+                    "within %.0f %% of the bucket's length",
+                    t->name, 100.0 * progress, 100.0 * DIG_SIMILAR);
     }
-    return DIG_OK;
 }
 
 enum dig_status dig_scene_similar(const struct dig_scene *const scene,
@@ -167,18 +144,15 @@ enum dig_status dig_scene_similar(const struct dig_scene *const scene,
                                   struct dig_error *const       error)
 {
     assert(scene != NULL && other != NULL);
-    const double    scale  = dig_scene_scale(scene, other);
-    enum dig_status status = compare_buckets(scene, other, scale, error);
-    if (status == DIG_OK) {
-        status = compare_boxes(scene, other, scale, error);
+    struct dig_conditions c     = { .error = error };
+    const double          scale = dig_scene_scale(scene, other);
+    compare_buckets(scene, other, scale, &c);
+    compare_boxes(scene, other, scale, &c);
+    compare_grains(scene, other, scale, &c);
+    for (size_t i = 0; i < scene->trajectories; i++) {
+        compare_ways(scene, &scene->trajectory[i], other, scale, &c);
     }
-    if (status == DIG_OK) {
-        status = compare_grains(scene, other, scale, error);
-    }
-    for (size_t i = 0; i < scene->trajectories && status == DIG_OK; i++) {
-        status = compare_ways(scene, &scene->trajectory[i], other, scale, error);
-    }
-    return status;
+    return c.status;
 }
 
 enum dig_status dig_bucket_similar(const struct dig_machine *const   machine,

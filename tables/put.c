@@ -10,54 +10,39 @@
 #include <math.h>
 #include <stdlib.h>
 
-static enum dig_status check_origin(const struct dig_run_origin *const o,
-                                    struct dig_error *const            error)
+static void check_origin(const struct dig_run_origin *const o, struct dig_conditions *const c)
 {
     const bool plain = o->effect[0] == '\0';
-    if (!plain && dig_effect_find(o->effect) < 0) {
-        return dig_error_set(error, DIG_EINVAL, "run: effect \"%s\", expected one with a name",
-                             o->effect);
-    }
-    if (!isfinite(o->magnitude) || (plain && fabs(o->magnitude) > 0.0)) {
-        return dig_error_set(error, DIG_EINVAL, "run: magnitude %g of effect \"%s\", expected %s",
-                             o->magnitude, o->effect, plain ? "0" : "a finite one");
-    }
-    if (!dig_label_ok(o->engine) || !dig_label_ok(o->version) ||
-        (o->made_utc[0] != '\0' && !dig_label_ok(o->made_utc))) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "run: engine \"%s\", version \"%s\", made \"%s\", "
-                             "expected " DIG_LABEL_RULE,
-                             o->engine, o->version, o->made_utc);
-    }
-    const struct dig_approach normalized = dig_approach_normalized(&o->approach);
-    if (!(normalized.depth >= DIG_APPROACH_DEPTH_LEAST &&
-          normalized.depth <= DIG_APPROACH_DEPTH_MOST) ||
-        !(fabs(normalized.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "run: depth %g, attack %g rad, expected %g to %g and at most %g",
-                             normalized.depth, normalized.attack_rad, DIG_APPROACH_DEPTH_LEAST,
-                             DIG_APPROACH_DEPTH_MOST, DIG_APPROACH_ATTACK_MOST_rad);
-    }
-    return DIG_OK;
+    dig_require(c, plain || dig_effect_find(o->effect) >= 0,
+                "run: effect \"%s\", expected one with a name", o->effect);
+    dig_require(c, isfinite(o->magnitude) && (!plain || fabs(o->magnitude) <= 0.0),
+                "run: magnitude %g of effect \"%s\", expected %s", o->magnitude, o->effect,
+                plain ? "0" : "a finite one");
+    dig_require(c,
+                dig_label_ok(o->engine) && dig_label_ok(o->version) &&
+                    (o->made_utc[0] == '\0' || dig_label_ok(o->made_utc)),
+                "run: engine \"%s\", version \"%s\", made \"%s\", expected " DIG_LABEL_RULE,
+                o->engine, o->version, o->made_utc);
+    const struct dig_approach made = dig_approach_normalized(&o->approach);
+    dig_require(c,
+                made.depth >= DIG_APPROACH_DEPTH_LEAST && made.depth <= DIG_APPROACH_DEPTH_MOST &&
+                    fabs(made.attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12),
+                "run: depth %g, attack %g rad, expected %g to %g and at most %g", made.depth,
+                made.attack_rad, DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST,
+                DIG_APPROACH_ATTACK_MOST_rad);
 }
 
-static enum dig_status check_recording(const struct dig_recording *const r, const double step_s,
-                                       struct dig_error *const error)
+static void check_recording(const struct dig_recording *const r, const double step_s,
+                            struct dig_conditions *const c)
 {
     for (size_t i = 0; i < r->rows; i++) {
         const struct dig_force_row *const row   = &r->row[i];
         const double                      off_s = row->t_s - (r->row[0].t_s + (double)i * step_s);
-        if (!(step_s > 0.0) || !(fabs(off_s) <= 0.01 * step_s)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "recording: row %zu: t_s %.9g, expected evenly spaced times",
-                                 i + 1, row->t_s);
-        }
-        if (!isfinite(row->My_Nm) || !isfinite(row->Fx_N) || !isfinite(row->Fz_N)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "recording: row %zu: expected finite forces and moment", i + 1);
-        }
+        dig_require(c, step_s > 0.0 && fabs(off_s) <= 0.01 * step_s,
+                    "recording: row %zu: t_s %.9g, expected evenly spaced times", i + 1, row->t_s);
+        dig_require(c, isfinite(row->My_Nm) && isfinite(row->Fx_N) && isfinite(row->Fz_N),
+                    "recording: row %zu: expected finite forces and moment", i + 1);
     }
-    return DIG_OK;
 }
 
 // The samples as they are stored, little endian, malloc'ed; NULL without memory.
@@ -236,12 +221,11 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     }
     const double step_s =
         (recording->row[rows - 1].t_s - recording->row[0].t_s) / (double)(rows - 1);
-    enum dig_status status = check_origin(origin, error);
-    if (status == DIG_OK) {
-        status = check_recording(recording, step_s, error);
-    }
-    if (status != DIG_OK) {
-        return status;
+    struct dig_conditions c = { .error = error };
+    check_origin(origin, &c);
+    check_recording(recording, step_s, &c);
+    if (c.status != DIG_OK) {
+        return c.status;
     }
     struct dig_db *const db    = dig_store_ask(store, error);
     uint8_t *const       bytes = pack_recording(recording);

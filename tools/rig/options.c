@@ -148,27 +148,18 @@ static const struct dig_program program = {
     .option      = known,
 };
 
-static enum dig_status check(const struct dig_rig_options *const options,
-                             struct dig_error *const             error)
+static enum dig_status check(const struct dig_rig_options *const o, struct dig_error *const error)
 {
-    if (options->command == DIG_RIG_COMMAND_AIR && options->inputs > 0) {
-        return dig_error_set(error, DIG_EINVAL, "%s: air takes no recording", options->input[0]);
-    }
-    if (options->command != DIG_RIG_COMMAND_AIR && options->inputs == 0) {
-        return dig_error_set(error, DIG_EINVAL, "no recording given");
-    }
-    if (options->machine == NULL) {
-        return dig_error_set(error, DIG_EINVAL, "--machine: missing, expected a machine YAML");
-    }
-    if (options->command != DIG_RIG_COMMAND_SERVE && options->out == NULL) {
-        return dig_error_set(error, DIG_EINVAL, "-o: missing, expected the file to write");
-    }
-    if (options->command == DIG_RIG_COMMAND_SERVE && options->can == NULL && options->tcp == NULL &&
-        options->rtu == NULL) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "no bus: expected --can, --modbus-tcp or --modbus-rtu");
-    }
-    return DIG_OK;
+    const bool            air   = o->command == DIG_RIG_COMMAND_AIR;
+    const bool            serve = o->command == DIG_RIG_COMMAND_SERVE;
+    struct dig_conditions c     = { .error = error };
+    dig_require(&c, !air || o->inputs == 0, "%s: air takes no recording", o->input[0]);
+    dig_require(&c, air || o->inputs > 0, "no recording given");
+    dig_require(&c, o->machine != NULL, "--machine: missing, expected a machine YAML");
+    dig_require(&c, serve || o->out != NULL, "-o: missing, expected the file to write");
+    dig_require(&c, !serve || o->can != NULL || o->tcp != NULL || o->rtu != NULL,
+                "no bus: expected --can, --modbus-tcp or --modbus-rtu");
+    return c.status;
 }
 
 enum dig_status dig_rig_options_parse(const int argc, char *argv[],
