@@ -36,23 +36,19 @@ static bool is_whole(const double value, const double from, const double to)
 static enum dig_status check(const struct dig_csv *const csv, const char *const path,
                              struct dig_error *const error)
 {
+    struct dig_conditions c = { .error = error };
     for (size_t i = 0; i < csv->rows; i++) {
-        if (!(at(csv, i, RADIUS) > 0.0)) {
-            return dig_error_set(error, DIG_EINVAL, "%s:%d: column radius_m: %g, expected > 0",
-                                 path, csv->line[i], at(csv, i, RADIUS));
-        }
-        if (has(csv, MATERIAL) && !is_whole(at(csv, i, MATERIAL), 0.0, (double)UINT8_MAX)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s:%d: column material: %g, expected a whole number from 0 to %d",
-                                 path, csv->line[i], at(csv, i, MATERIAL), UINT8_MAX);
-        }
-        if (has(csv, CLUMP) && !is_whole(at(csv, i, CLUMP), 1.0, (double)UINT32_MAX)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s:%d: column clump: %g, expected a whole number from 1", path,
-                                 csv->line[i], at(csv, i, CLUMP));
-        }
+        dig_require(&c, at(csv, i, RADIUS) > 0.0, "%s:%d: column radius_m: %g, expected > 0", path,
+                    csv->line[i], at(csv, i, RADIUS));
+        dig_require(&c,
+                    !has(csv, MATERIAL) || is_whole(at(csv, i, MATERIAL), 0.0, (double)UINT8_MAX),
+                    "%s:%d: column material: %g, expected a whole number from 0 to %d", path,
+                    csv->line[i], at(csv, i, MATERIAL), UINT8_MAX);
+        dig_require(&c, !has(csv, CLUMP) || is_whole(at(csv, i, CLUMP), 1.0, (double)UINT32_MAX),
+                    "%s:%d: column clump: %g, expected a whole number from 1", path, csv->line[i],
+                    at(csv, i, CLUMP));
     }
-    return DIG_OK;
+    return c.status;
 }
 
 static enum dig_status take(const struct dig_csv *const csv, struct dig_bed *const bed)

@@ -43,11 +43,11 @@ static double number(const struct reader *const r, const size_t row, const enum 
     return isnan(value) && f != DIG_MAP_CARRIED_kg ? 0.0 : value * r->map->field[f].factor;
 }
 
-static enum dig_status refuse(const struct reader *const r, const size_t row,
-                              const enum dig_map_field f, const char *const expected)
+static void require(struct dig_conditions *const c, const bool holds, const struct reader *const r,
+                    const size_t row, const enum dig_map_field f, const char *const expected)
 {
-    return dig_error_set(r->error, DIG_EINVAL, "%s:%d: column %s: %g, expected %s", r->path,
-                         r->csv.line[row], name_of(r, f), found(r, row, f), expected);
+    dig_require(c, holds, "%s:%d: column %s: %g, expected %s", r->path, r->csv.line[row],
+                name_of(r, f), found(r, row, f), expected);
 }
 
 // The dig a sample belongs to, without its rows. A depth that is not there is 0, which counts as 1;
@@ -55,27 +55,25 @@ static enum dig_status refuse(const struct reader *const r, const size_t row,
 static enum dig_status read_dig(const struct reader *const r, const size_t row,
                                 struct dig_foreign_dig *const dig)
 {
-    const char *const name       = is_column(r, DIG_MAP_TRAJECTORY)
-                                       ? r->csv.word[row]
-                                       : r->map->field[DIG_MAP_TRAJECTORY].value;
-    const double      depth      = number(r, row, DIG_MAP_DEPTH);
-    const double      attack_deg = number(r, row, DIG_MAP_ATTACK_deg);
-    const double      packing    = number(r, row, DIG_MAP_PACKING);
-    if (!isnan(found(r, row, DIG_MAP_DEPTH)) &&
-        !(depth >= DIG_APPROACH_DEPTH_LEAST && depth <= DIG_APPROACH_DEPTH_MOST)) {
-        return refuse(r, row, DIG_MAP_DEPTH, "a factor of 0.2 to 3");
-    }
-    if (!(fabs(attack_deg) <= 45.0)) {
-        return refuse(r, row, DIG_MAP_ATTACK_deg, "-45 to 45 deg");
-    }
-    if (!dig_name_ok(name) || strlen(name) >= DIG_NAME_SIZE) {
-        return dig_error_set(r->error, DIG_EINVAL,
-                             "%s:%d: column %s: \"%.40s\", expected " DIG_NAME_RULE
-                             ", at most 31 characters",
-                             r->path, r->csv.line[row], name_of(r, DIG_MAP_TRAJECTORY), name);
-    }
-    if (!(packing >= 0.0 && packing <= 1e6) || packing > floor(packing)) {
-        return refuse(r, row, DIG_MAP_PACKING, "a whole number from 0");
+    struct dig_conditions c          = { .error = r->error };
+    const char *const     name       = is_column(r, DIG_MAP_TRAJECTORY)
+                                           ? r->csv.word[row]
+                                           : r->map->field[DIG_MAP_TRAJECTORY].value;
+    const double          depth      = number(r, row, DIG_MAP_DEPTH);
+    const double          attack_deg = number(r, row, DIG_MAP_ATTACK_deg);
+    const double          packing    = number(r, row, DIG_MAP_PACKING);
+    require(&c,
+            isnan(found(r, row, DIG_MAP_DEPTH)) ||
+                (depth >= DIG_APPROACH_DEPTH_LEAST && depth <= DIG_APPROACH_DEPTH_MOST),
+            r, row, DIG_MAP_DEPTH, "a factor of 0.2 to 3");
+    require(&c, fabs(attack_deg) <= 45.0, r, row, DIG_MAP_ATTACK_deg, "-45 to 45 deg");
+    dig_require(&c, dig_name_ok(name) && strlen(name) < DIG_NAME_SIZE,
+                "%s:%d: column %s: \"%.40s\", expected " DIG_NAME_RULE ", at most 31 characters",
+                r->path, r->csv.line[row], name_of(r, DIG_MAP_TRAJECTORY), name);
+    require(&c, packing >= 0.0 && packing <= 1e6 && !(packing > floor(packing)), r, row,
+            DIG_MAP_PACKING, "a whole number from 0");
+    if (c.status != DIG_OK) {
+        return c.status;
     }
     *dig = (struct dig_foreign_dig){
         .gravel   = { { number(r, row, DIG_MAP_FRICTION), number(r, row, DIG_MAP_ROLLING),

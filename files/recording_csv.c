@@ -64,55 +64,41 @@ bool dig_machine_recording_is(const char *const path)
     return dig_csv_has(path, dig_signal_name(DIG_SIGNAL_BUCKET_rad));
 }
 
-static enum dig_status check_rows(const struct dig_csv *const csv, const char *const path,
-                                  const struct dig_csv_column column[],
-                                  struct dig_error *const     error)
+static void check_rows(const struct dig_csv *const csv, const char *const path,
+                       const struct dig_csv_column column[], struct dig_conditions *const c)
 {
-    if (csv->rows < ROWS_MIN) {
-        return dig_error_set(error, DIG_EINVAL, "%s:%d: column t_s: 1 row, expected at least %d",
-                             path, csv->line[0], ROWS_MIN);
-    }
-    for (size_t i = 0; i < csv->rows; i++) {
-        const double t_s = csv->value[i * csv->columns];
-        if (!(fabs(t_s) <= TIME_MAX_s)) {
-            return dig_error_set(error, DIG_EINVAL, "%s:%d: column t_s: %g, expected within +-%g",
-                                 path, csv->line[i], t_s, TIME_MAX_s);
-        }
-        const double before_s = i > 0 ? csv->value[(i - 1) * csv->columns] : -(double)INFINITY;
-        if (!(t_s > before_s)) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s:%d: column t_s: %.9g after %.9g, expected ascending time",
-                                 path, csv->line[i], t_s, before_s);
-        }
-        for (size_t c = 1; c < csv->columns; c++) {
-            const double value = csv->value[i * csv->columns + c];
-            if (fabs(value) > VALUE_MAX) {
-                return dig_error_set(error, DIG_EINVAL,
-                                     "%s:%d: column %s: %g, expected within +-%g", path,
-                                     csv->line[i], column[c].name, value, VALUE_MAX);
-            }
+    dig_require(c, csv->rows >= ROWS_MIN, "%s:%d: column t_s: 1 row, expected at least %d", path,
+                csv->line[0], ROWS_MIN);
+    for (size_t i = 0; i < csv->rows && c->status == DIG_OK; i++) {
+        const double *const row      = &csv->value[i * csv->columns];
+        const double        before_s = i > 0 ? row[-(ptrdiff_t)csv->columns] : -(double)INFINITY;
+        dig_require(c, fabs(row[0]) <= TIME_MAX_s, "%s:%d: column t_s: %g, expected within +-%g",
+                    path, csv->line[i], row[0], TIME_MAX_s);
+        dig_require(c, row[0] > before_s,
+                    "%s:%d: column t_s: %.9g after %.9g, expected ascending time", path,
+                    csv->line[i], row[0], before_s);
+        for (size_t k = 1; k < csv->columns; k++) {
+            dig_require(c, !(fabs(row[k]) > VALUE_MAX),
+                        "%s:%d: column %s: %g, expected within +-%g", path, csv->line[i],
+                        column[k].name, row[k], VALUE_MAX);
         }
     }
-    return DIG_OK;
 }
 
 // Every step of a force recording, for a curve is made of all of them. The mean of a machine
 // recording: a bus may drop samples now and then.
-static enum dig_status check_rate(const struct dig_csv *const csv, const bool each,
-                                  const char *const path, struct dig_error *const error)
+static void check_rate(const struct dig_csv *const csv, const bool each, const char *const path,
+                       struct dig_conditions *const c)
 {
     const size_t step = each ? 1 : csv->rows - 1;
-    for (size_t i = step; i < csv->rows; i += step) {
+    for (size_t i = step; i < csv->rows && c->status == DIG_OK; i += step) {
         const double gap_s =
             (csv->value[i * csv->columns] - csv->value[(i - step) * csv->columns]) / (double)step;
-        if (!(gap_s <= GAP_MAX_s * (1.0 + GAP_SLACK))) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s:%d: column t_s: %.4g s between samples, expected %g s or less "
-                                 "(50 Hz or faster)",
-                                 path, csv->line[i], gap_s, GAP_MAX_s);
-        }
+        dig_require(c, gap_s <= GAP_MAX_s * (1.0 + GAP_SLACK),
+                    "%s:%d: column t_s: %.4g s between samples, expected %g s or less (50 Hz or "
+                    "faster)",
+                    path, csv->line[i], gap_s, GAP_MAX_s);
     }
-    return DIG_OK;
 }
 
 // Reads a file of these columns, and checks its rows' times and their rate.
@@ -120,16 +106,18 @@ static enum dig_status read_rows(const char *const path, const size_t columns,
                                  const struct dig_csv_column column[], struct dig_csv *const csv,
                                  struct dig_error *const error)
 {
-    enum dig_status status = dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, columns, column, csv, error);
+    struct dig_conditions c = { .error = error };
+    const enum dig_status status =
+        dig_csv_read(path, DIG_CSV_REFUSE_OTHERS, columns, column, csv, error);
     if (status != DIG_OK) {
         return status;
     }
-    status = check_rows(csv, path, column, error);
-    status = status == DIG_OK ? check_rate(csv, column == force_column, path, error) : status;
-    if (status != DIG_OK) {
+    check_rows(csv, path, column, &c);
+    check_rate(csv, column == force_column, path, &c);
+    if (c.status != DIG_OK) {
         dig_csv_finish(csv);
     }
-    return status;
+    return c.status;
 }
 
 enum dig_status dig_recording_read(const char *const path, struct dig_recording *const recording,
