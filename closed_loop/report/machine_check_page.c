@@ -52,10 +52,9 @@ static void put_list(FILE *const to, const struct dig_check_subject *const subje
 }
 
 // What the drive of a joint pushed, and what it had to. room: of three curves.
-static enum dig_status put_joint(FILE *const to, const struct dig_check_curves *const curves,
-                                 const size_t joint, const double drive_N[], const double load_N[],
-                                 const char *const how, double room[],
-                                 struct dig_error *const error)
+static void put_joint(FILE *const to, const struct dig_check_curves *const curves,
+                      const size_t joint, const double drive_N[], const double load_N[],
+                      const char *const how, double room[], struct dig_conditions *const c)
 {
     const size_t  most     = curves->points / EVERY + 1;
     double *const time_s   = room;
@@ -73,7 +72,7 @@ static enum dig_status put_joint(FILE *const to, const struct dig_check_curves *
     (void)snprintf(title, sizeof title, "%s%s", dig_joint_name((enum dig_joint)joint), how);
     if (!any) {
         (void)fprintf(to, "<p>%s: no instant can be balanced.</p>\n", title);
-        return DIG_OK;
+        return;
     }
     const struct dig_plot plot = {
         .title   = title,
@@ -84,28 +83,27 @@ static enum dig_status put_joint(FILE *const to, const struct dig_check_curves *
         .s       = { { "measured", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, time_s, drive_kN, NULL },
                      { "expected", DIG_PLOT_DASHED, DIG_PLOT_PREDICTED, n, time_s, load_kN, NULL } },
     };
-    return dig_plot_figure(&plot, to, error);
+    dig_plot_figure(&plot, to, c);
 }
 
 // Of each joint before, and after if that is not the same.
-static enum dig_status put_pictures(FILE *const to, const struct dig_check_subject *const subject,
-                                    struct dig_error *const error)
+static void put_pictures(FILE *const to, const struct dig_check_subject *const subject,
+                         struct dig_conditions *const c)
 {
-    const struct dig_check_curves *const c = &subject->check->curves;
+    const struct dig_check_curves *const of = &subject->check->curves;
 
-    const bool      mended = subject->check->verdict >= DIG_CHECK_DOUBTFUL;
-    double *const   room   = malloc(3 * (c->points / EVERY + 1) * sizeof *room);
-    enum dig_status status = DIG_OK;
+    const bool    mended = subject->check->verdict >= DIG_CHECK_DOUBTFUL;
+    double *const room   = malloc(3 * (of->points / EVERY + 1) * sizeof *room);
     if (room == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "%zu points", c->points);
+        c->status = dig_error_set(c->error, DIG_ENOMEM, "%zu points", of->points);
+        return;
     }
     (void)fputs("<h2>Measured against expected</h2>\n<div class=grid>\n", to);
-    for (size_t j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
-        status =
-            put_joint(to, c, j, c->drive_N, c->load_N, mended ? ", as it stands" : "", room, error);
-        if (status == DIG_OK && mended) {
-            status = put_joint(to, c, j, c->mended_drive_N, c->mended_load_N,
-                               ", with what is wrong taken off", room, error);
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        put_joint(to, of, j, of->drive_N, of->load_N, mended ? ", as it stands" : "", room, c);
+        if (mended) {
+            put_joint(to, of, j, of->mended_drive_N, of->mended_load_N,
+                      ", with what is wrong taken off", room, c);
         }
     }
     (void)fputs(
@@ -114,15 +112,15 @@ static enum dig_status put_pictures(FILE *const to, const struct dig_check_subje
         "they are the same.</p>\n",
         to);
     free(room);
-    return status;
 }
 
 enum dig_status dig_machine_check_html(const struct dig_check_subject *const subject,
                                        FILE *const to, struct dig_error *const error)
 {
     assert(subject != NULL && to != NULL);
-    char title[DIG_CHECK_TEXT_SIZE];
-    char sentence[SENTENCE];
+    char                  title[DIG_CHECK_TEXT_SIZE];
+    char                  sentence[SENTENCE];
+    struct dig_conditions c = { .error = error };
     (void)snprintf(title, sizeof title, "%s in free air", subject->machine->name);
     dig_check_sentence(subject, sizeof sentence, sentence);
     dig_html_begin(to, title);
@@ -132,7 +130,7 @@ enum dig_status dig_machine_check_html(const struct dig_check_subject *const sub
     dig_html_without_folders(to, subject->recording);
     (void)fprintf(to, ", %.0f s.</p>\n", subject->check->duration_s);
     put_list(to, subject);
-    const enum dig_status status = put_pictures(to, subject, error);
+    put_pictures(to, subject, &c);
     dig_html_end(to, "Made by digloop check.");
-    return status;
+    return c.status;
 }

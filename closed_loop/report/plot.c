@@ -218,8 +218,8 @@ void dig_plot_of_dig(const double unit, const double measured[DIG_CURVE_POINTS],
     }
 }
 
-enum dig_status dig_plot_figure(const struct dig_plot *const plot, FILE *const to,
-                                struct dig_error *const error)
+static enum dig_status put_figure(const struct dig_plot *const plot, FILE *const to,
+                                  struct dig_error *const error)
 {
     assert(plot != NULL && to != NULL && plot->series <= DIG_PLOT_SERIES_MAX && plot->height > 0);
     const unsigned above = plot->title[0] == '\0' ? 0 : LINE;
@@ -249,4 +249,10 @@ done:
         (void)fclose(script);
     }
     return status;
+}
+
+void dig_plot_figure(const struct dig_plot *const plot, FILE *const to,
+                     struct dig_conditions *const c)
+{
+    c->status = c->status == DIG_OK ? put_figure(plot, to, c->error) : c->status;
 }

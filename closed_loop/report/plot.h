@@ -69,9 +69,9 @@ void dig_plot_of_dig(double unit, const double measured[DIG_CURVE_POINTS], doubl
                      const double sigma[DIG_CURVE_POINTS], struct dig_plot_dig *dig);
 
 /// Writes a <figure> for an HTML page, of one <svg> element. Points that are not finite are gaps.
-/// DIG_EIO: gnuplot is missing or failed; nothing useful was written then. Starts a process; takes
-/// some tens of milliseconds.
-DIG_MUST_CHECK enum dig_status dig_plot_figure(const struct dig_plot *plot, FILE *to,
-                                               struct dig_error *error);
+/// As one of a page's conditions: where one before it did not hold it is not drawn. DIG_EIO:
+/// gnuplot is missing or failed; nothing useful was written then. Starts a process; takes some tens
+/// of milliseconds.
+void dig_plot_figure(const struct dig_plot *plot, FILE *to, struct dig_conditions *c);
 
 #endif // DIG_CLOSED_LOOP_REPORT_PLOT_H

@@ -115,9 +115,9 @@ static void put_table(FILE *const to, const struct dig_report_run *const run)
 }
 
 // Measured against the model along one dig; what lies outside the measured range is a gap.
-static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *const dig,
-                                const double lambda, const char *const title,
-                                const char *const model, struct dig_error *const error)
+static void put_plot(FILE *const to, const struct dig_report_dig *const dig, const double lambda,
+                     const char *const title, const char *const model,
+                     struct dig_conditions *const c)
 {
     struct dig_plot_dig p;
     double              fed[DIG_CURVE_POINTS];
@@ -142,7 +142,7 @@ static enum dig_status put_plot(FILE *const to, const struct dig_report_dig *con
                { "measured through pressures", DIG_PLOT_LINE, DIG_PLOT_MEASURED, n, p.x, p.measured,
                  NULL } },
     };
-    return dig_plot_figure(&plot, to, error);
+    dig_plot_figure(&plot, to, c);
 }
 
 static void put_sentence(FILE *const to, const struct dig_report *const report)
@@ -160,6 +160,7 @@ enum dig_status dig_report_html(const struct dig_report *const report, FILE *con
                                 struct dig_error *const error)
 {
     assert(report != NULL && to != NULL);
+    struct dig_conditions c = { .error = error };
     dig_html_begin(to, report->title);
     put_sentence(to, report);
     (void)fputs("<p>Table: ", to);
@@ -173,18 +174,12 @@ enum dig_status dig_report_html(const struct dig_report *const report, FILE *con
         dig_html_put(to, "<h2>%s</h2>\n<p>%s</p>\n", run->name, run->dig);
         put_table(to, run);
         (void)fputs("<div class=grid>\n", to);
-        enum dig_status status =
-            put_plot(to, &run->simple, report->lambda, "The simple dig that identified the gravel",
-                     "identified gravel", error);
-        if (status == DIG_OK) {
-            status = put_plot(to, &run->real, report->lambda,
-                              "The actual dig, predicted before it was dug", "predicted", error);
-        }
-        if (status != DIG_OK) {
-            return status;
-        }
+        put_plot(to, &run->simple, report->lambda, "The simple dig that identified the gravel",
+                 "identified gravel", &c);
+        put_plot(to, &run->real, report->lambda, "The actual dig, predicted before it was dug",
+                 "predicted", &c);
         (void)fputs("</div>\n", to);
     }
     dig_html_end(to, DIG_REPORT_ERROR_NOTE);
-    return DIG_OK;
+    return c.status;
 }

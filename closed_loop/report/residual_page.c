@@ -50,9 +50,8 @@ static void put_digs(FILE *const to, const struct dig_trace *const trace)
         to);
 }
 
-static enum dig_status put_plot(FILE *const to, const struct dig_trend *const trend,
-                                const char *const x_label, const double scale,
-                                struct dig_error *const error)
+static void put_plot(FILE *const to, const struct dig_trend *const trend, const char *const x_label,
+                     const double scale, struct dig_conditions *const c)
 {
     double x[DIG_TREND_BINS];
     double y[DIG_TREND_BINS];
@@ -78,7 +77,7 @@ static enum dig_status put_plot(FILE *const to, const struct dig_trend *const tr
                { "mean", DIG_PLOT_LINE, DIG_PLOT_BEFORE, trend->bins, x, y, NULL },
                { NULL, DIG_PLOT_POINTS, DIG_PLOT_BEFORE, trend->bins, x, y, NULL } },
     };
-    return dig_plot_figure(&plot, to, error);
+    dig_plot_figure(&plot, to, c);
 }
 
 static void put_slopes(FILE *const to, const struct dig_residuals *const residuals)
@@ -107,27 +106,22 @@ static void put_slopes(FILE *const to, const struct dig_residuals *const residua
                 to);
 }
 
-enum dig_status dig_residuals_html(const struct dig_trace *const trace, FILE *const to,
-                                   struct dig_error *const error)
+void dig_residuals_html(const struct dig_trace *const trace, FILE *const to,
+                        struct dig_conditions *const c)
 {
     assert(trace != NULL && to != NULL);
     const struct dig_residuals *const residuals = trace->residuals;
     if (residuals == NULL) {
-        return DIG_OK;
+        return;
     }
     put_digs(to, trace);
     if (!residuals->known[DIG_CHANNEL_MY_Nm]) {
-        return DIG_OK;
+        return;
     }
     const struct dig_trend *const moment = residuals->trend[DIG_CHANNEL_MY_Nm];
     (void)fputs("<h2>What the residual goes with</h2>\n<div class=grid>\n", to);
-    enum dig_status status =
-        put_plot(to, &moment[DIG_REGRESSOR_PATH], "path of the dig done, %", 100.0, error);
-    if (status == DIG_OK) {
-        status = put_plot(to, &moment[DIG_STATE_DEPTH_m], "depth of the tooth at rig scale, mm",
-                          1e3, error);
-    }
+    put_plot(to, &moment[DIG_REGRESSOR_PATH], "path of the dig done, %", 100.0, c);
+    put_plot(to, &moment[DIG_STATE_DEPTH_m], "depth of the tooth at rig scale, mm", 1e3, c);
     (void)fputs("</div>\n", to);
     put_slopes(to, residuals);
-    return status;
 }

@@ -23,7 +23,6 @@ void dig_residuals_json(const struct dig_trace *trace, FILE *to);
 
 /// A table dig by dig, one of the slopes, pictures over path and depth. Nothing where they were not
 /// worked out. DIG_EIO as dig_plot_figure().
-DIG_MUST_CHECK enum dig_status dig_residuals_html(const struct dig_trace *trace, FILE *to,
-                                                  struct dig_error *error);
+void dig_residuals_html(const struct dig_trace *trace, FILE *to, struct dig_conditions *c);
 
 #endif // DIG_CLOSED_LOOP_REPORT_RESIDUAL_REPORT_H

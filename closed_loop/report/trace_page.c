@@ -165,10 +165,9 @@ static void put_candidates(FILE *const to, const struct dig_trace *const trace)
         to);
 }
 
-static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves *const curves,
-                                   const struct dig_measured *const dig,
-                                   const char *const trajectory, const double lambda,
-                                   const size_t channel, struct dig_error *const error)
+static void put_channel(FILE *const to, const struct dig_trace_curves *const curves,
+                        const struct dig_measured *const dig, const char *const trajectory,
+                        const double lambda, const size_t channel, struct dig_conditions *const c)
 {
     static const char *const label[2][DIG_FORCE_CHANNELS] = {
         { "moment, N·m at rig scale", "Fx, N at rig scale", "Fz, N at rig scale" },
@@ -218,38 +217,27 @@ static enum dig_status put_channel(FILE *const to, const struct dig_trace_curves
             (struct dig_plot_series){ "before", DIG_PLOT_DOTTED, DIG_PLOT_BEFORE, n, p.x, before,
                                       NULL };
     }
-    return dig_plot_figure(&plot, to, error);
+    dig_plot_figure(&plot, to, c);
 }
 
-static enum dig_status put_dig(FILE *const to, const struct dig_trace_curves *const curves,
-                               const struct dig_measured *const dig, const char *const trajectory,
-                               const double lambda, struct dig_error *const error)
-{
-    enum dig_status status = DIG_OK;
-    for (size_t c = 0; c < DIG_FORCE_CHANNELS && status == DIG_OK; c++) {
-        if (dig->measured[c]) {
-            status = put_channel(to, curves, dig, trajectory, lambda, c, error);
-        }
-    }
-    return status;
-}
-
-static enum dig_status put_digs(FILE *const to, const struct dig_trace *const trace,
-                                const double lambda, struct dig_error *const error)
+static void put_digs(FILE *const to, const struct dig_trace *const trace, const double lambda,
+                     struct dig_conditions *const c)
 {
     const struct dig_judged *const judged = &trace->judged;
     (void)fputs("<h2>Dig by dig</h2>\n<div class=grid>\n", to);
-    enum dig_status status = DIG_OK;
-    for (size_t d = 0; d < judged->digs && status == DIG_OK; d++) {
+    for (size_t d = 0; d < judged->digs; d++) {
         const struct dig_measured *const dig = &judged->measured[d];
-        status = put_dig(to, &judged->curves[d], dig, judged->set->trajectory[dig->trajectory].name,
-                         lambda, error);
+        for (size_t channel = 0; channel < DIG_FORCE_CHANNELS; channel++) {
+            if (dig->measured[channel]) {
+                put_channel(to, &judged->curves[d], dig,
+                            judged->set->trajectory[dig->trajectory].name, lambda, channel, c);
+            }
+        }
     }
     (void)fputs("</div>\n<p class=muted>Before: the table with the gravel alone refitted. After: "
                 "with what was found, and the band that holds 90 % of digs. Forces are drawn where "
                 "every sensor for them was there.</p>\n",
                 to);
-    return status;
 }
 
 static void put_tells(FILE *const to, const struct dig_trace *const trace)
@@ -299,10 +287,11 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
 {
     assert(trace != NULL && subject != NULL && to != NULL);
     assert(subject->campaign != NULL && subject->table != NULL);
-    char              sentence[1024];
-    char              title[256];
-    const char *const campaign = subject->campaign;
-    size_t            ends     = strlen(campaign);
+    struct dig_conditions c = { .error = error };
+    char                  sentence[1024];
+    char                  title[256];
+    const char *const     campaign = subject->campaign;
+    size_t                ends     = strlen(campaign);
     while (ends > 1 && campaign[ends - 1] == '/') {
         ends--;
     }
@@ -329,17 +318,11 @@ enum dig_status dig_trace_html(const struct dig_trace *const         trace,
     put_sets(to, trace);
     put_errors(to, trace);
     put_found(to, trace);
-    const enum dig_status status = put_digs(to, trace, subject->lambda, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    put_digs(to, trace, subject->lambda, &c);
     put_residuals(to, trace);
-    const enum dig_status left = dig_residuals_html(trace, to, error);
-    if (left != DIG_OK) {
-        return left;
-    }
+    dig_residuals_html(trace, to, &c);
     put_candidates(to, trace);
     put_next(to, trace);
     dig_html_end(to, DIG_REPORT_ERROR_NOTE);
-    return DIG_OK;
+    return c.status;
 }

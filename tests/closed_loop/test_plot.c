@@ -21,11 +21,12 @@ static char *svg_of(const char *const text)
         .series  = 1,
         .s       = { { text, DIG_PLOT_LINE, 0x1f5fa8, 2, two, two, NULL } },
     };
-    struct dig_error error = { "" };
-    char            *svg   = NULL;
-    size_t           size  = 0;
-    FILE *const      to    = open_memstream(&svg, &size);
-    assert_int_equal(dig_plot_figure(&plot, to, &error), DIG_OK);
+    struct dig_conditions c    = { .error = NULL };
+    char                 *svg  = NULL;
+    size_t                size = 0;
+    FILE *const           to   = open_memstream(&svg, &size);
+    dig_plot_figure(&plot, to, &c);
+    assert_int_equal(c.status, DIG_OK);
     (void)fclose(to);
     return svg;
 }
@@ -73,20 +74,21 @@ TEST(markup_and_control_characters_are_escaped)
 // 0 to 1 kN·m at the left is 0 to 0.1 N·m at the right: both scales' numbers are drawn.
 TEST(a_second_scale_stands_at_the_right)
 {
-    struct dig_plot  plot  = { .title        = "",
-                               .x_label      = "x",
-                               .y_label      = "left, kN·m",
-                               .right_factor = 0.0625,
-                               .height       = 370,
-                               .series       = 1,
-                               .s            = { { NULL, DIG_PLOT_LINE, 0, 2, two, two, NULL } } };
-    struct dig_error error = { "" };
+    struct dig_plot       plot = { .title        = "",
+                                   .x_label      = "x",
+                                   .y_label      = "left, kN·m",
+                                   .right_factor = 0.0625,
+                                   .height       = 370,
+                                   .series       = 1,
+                                   .s = { { NULL, DIG_PLOT_LINE, 0, 2, two, two, NULL } } };
+    struct dig_conditions c    = { .error = NULL };
     for (int i = 0; i < 2; i++) {
         char       *svg  = NULL;
         size_t      size = 0;
         FILE *const to   = open_memstream(&svg, &size);
         plot.right_label = i == 0 ? NULL : "right, N·m";
-        assert_int_equal(dig_plot_figure(&plot, to, &error), DIG_OK);
+        dig_plot_figure(&plot, to, &c);
+        assert_int_equal(c.status, DIG_OK);
         (void)fclose(to);
         assert_int_equal(strstr(svg, ">right, N·m</text>") != NULL, i);
         assert_int_equal(strstr(svg, "> 0.0625</text>") != NULL, i);

@@ -104,27 +104,6 @@ static void put_subject(const struct digreport_page *const page, FILE *const to)
     }
 }
 
-static enum dig_status put_page(const struct digreport_page *const page, FILE *const to,
-                                struct dig_error *const error)
-{
-    dig_html_begin(to, page->subject->title);
-    put_subject(page, to);
-    enum dig_status status = digreport_page_digs(page, to, error);
-    if (status == DIG_OK) {
-        status = digreport_page_gravels(page, to, error);
-    }
-    put_effects(page->subject->model, to);
-    put_events(page->shift, to);
-    dig_html_end(
-        to, DIG_REPORT_ERROR_NOTE
-        " Of the first prediction made in the dig, from there on; of a machine of unknown size the "
-        "average is ±0.5 s. Predicted: expected of one dig, with the interval that holds 90 % of "
-        "digs. Energy: work of the bucket on the soil, where forces are measured. Ended: whole, "
-        "dug to the end of its trajectory; aborted, left it before; unknown, along none, too short "
-        "or with samples missing.");
-    return status;
-}
-
 enum dig_status digreport_shift_html(const struct digreport_shift *const         shift,
                                      const struct digreport_shift_subject *const subject,
                                      FILE *const to, struct dig_error *const error)
@@ -136,5 +115,20 @@ enum dig_status digreport_shift_html(const struct digreport_shift *const        
     digreport_time(shift->first_us, clock);
     (void)snprintf(page.x_label, sizeof page.x_label, "time since %s, %s", clock,
                    minutes > 180.0 ? "h" : "min");
-    return put_page(&page, to, error);
+
+    struct dig_conditions c = { .error = error };
+    dig_html_begin(to, subject->title);
+    put_subject(&page, to);
+    digreport_page_digs(&page, to, &c);
+    digreport_page_gravels(&page, to, &c);
+    put_effects(subject->model, to);
+    put_events(shift, to);
+    dig_html_end(
+        to, DIG_REPORT_ERROR_NOTE
+        " Of the first prediction made in the dig, from there on; of a machine of unknown size the "
+        "average is ±0.5 s. Predicted: expected of one dig, with the interval that holds 90 % of "
+        "digs. Energy: work of the bucket on the soil, where forces are measured. Ended: whole, "
+        "dug to the end of its trajectory; aborted, left it before; unknown, along none, too short "
+        "or with samples missing.");
+    return c.status;
 }

@@ -61,8 +61,8 @@ static struct number number_of(const struct digreport_shift *const shift, const 
 }
 
 // A picture without any number is left out. room: of six curves of three points a dig.
-static enum dig_status put_picture(const struct digreport_page *const page, FILE *const to,
-                                   const int picture, double room[], struct dig_error *const error)
+static void put_picture(const struct digreport_page *const page, FILE *const to, const int picture,
+                        double room[], struct dig_conditions *const c)
 {
     const struct digreport_shift *const shift = page->shift;
     const struct picture *const         p     = &pictures[picture];
@@ -89,7 +89,7 @@ static enum dig_status put_picture(const struct digreport_page *const page, FILE
         }
     }
     if (!digreport_page_any(shift->digs, y)) {
-        return DIG_OK;
+        return;
     }
     struct dig_plot plot = {
         .title     = p->title,
@@ -120,24 +120,23 @@ static enum dig_status put_picture(const struct digreport_page *const page, FILE
                                                       x,
                                                       y,
                                                       NULL };
-    return dig_plot_figure(&plot, to, error);
+    dig_plot_figure(&plot, to, c);
 }
 
-static enum dig_status put_pictures(const struct digreport_page *const page, FILE *const to,
-                                    struct dig_error *const error)
+static void put_pictures(const struct digreport_page *const page, FILE *const to,
+                         struct dig_conditions *const c)
 {
-    double *const   room   = calloc(18 * page->shift->digs, sizeof *room);
-    enum dig_status status = DIG_OK;
+    double *const room = calloc(18 * page->shift->digs, sizeof *room);
     if (room == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+        c->status = dig_error_set(c->error, DIG_ENOMEM, "out of memory");
+        return;
     }
     (void)fputs("<div class=grid>\n", to);
-    for (int p = 0; p < PICTURES && status == DIG_OK; p++) {
-        status = put_picture(page, to, p, room, error);
+    for (int p = 0; p < PICTURES; p++) {
+        put_picture(page, to, p, room, c);
     }
     (void)fputs("</div>\n", to);
     free(room);
-    return status;
 }
 
 static void put_digs(const struct digreport_shift *const shift, FILE *const to)
@@ -173,16 +172,15 @@ static void put_digs(const struct digreport_shift *const shift, FILE *const to)
     (void)fputs("</table>\n", to);
 }
 
-enum dig_status digreport_page_digs(const struct digreport_page *const page, FILE *const to,
-                                    struct dig_error *const error)
+void digreport_page_digs(const struct digreport_page *const page, FILE *const to,
+                         struct dig_conditions *const c)
 {
     assert(page != NULL && to != NULL);
     (void)fputs("<h2>Digs</h2>\n", to);
     if (page->shift->digs == 0) {
         (void)fputs("<p>No dig was finished.</p>\n", to);
-        return DIG_OK;
+        return;
     }
-    const enum dig_status status = put_pictures(page, to, error);
+    put_pictures(page, to, c);
     put_digs(page->shift, to);
-    return status;
 }

@@ -11,14 +11,15 @@
 #include <stdlib.h>
 
 // A gravel stands from its match to the next; a gap where none was known.
-static enum dig_status put_gravel_plot(const struct digreport_page *const page, FILE *const to,
-                                       const int axis, struct dig_error *const error)
+static void put_gravel_plot(const struct digreport_page *const page, FILE *const to, const int axis,
+                            struct dig_conditions *const c)
 {
     const struct digreport_shift *const shift = page->shift;
     const size_t                        n     = 3 * shift->gravels;
     double *const                       all   = calloc(4 * n, sizeof *all);
     if (all == NULL) {
-        return dig_error_set(error, DIG_ENOMEM, "out of memory");
+        c->status = dig_error_set(c->error, DIG_ENOMEM, "out of memory");
+        return;
     }
     for (size_t i = 0; i < shift->gravels; i++) {
         const struct digreport_gravel *const g = &shift->gravel[i];
@@ -46,12 +47,10 @@ static enum dig_status put_gravel_plot(const struct digreport_page *const page, 
                                      all + 3 * n },
                                    { "identified", DIG_PLOT_LINE, DIG_PLOT_PREDICTED, n, all, all + n, NULL } },
     };
-    enum dig_status status = DIG_OK;
     if (digreport_page_any(n, all + n)) {
-        status = dig_plot_figure(&plot, to, error);
+        dig_plot_figure(&plot, to, c);
     }
     free(all);
-    return status;
 }
 
 static void put_gravel_row(FILE *const to, const struct digreport_gravel *const g)
@@ -79,19 +78,18 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
     (void)fputs("</td></tr>\n", to);
 }
 
-enum dig_status digreport_page_gravels(const struct digreport_page *const page, FILE *const to,
-                                       struct dig_error *const error)
+void digreport_page_gravels(const struct digreport_page *const page, FILE *const to,
+                            struct dig_conditions *const c)
 {
     const struct digreport_shift *const shift = page->shift;
     (void)fputs("<h2>Gravel</h2>\n", to);
     if (shift->gravels == 0) {
         (void)fputs("<p>No dig identified a gravel.</p>\n", to);
-        return DIG_OK;
+        return;
     }
-    enum dig_status status = DIG_OK;
     (void)fputs("<div class=grid>\n", to);
-    for (int a = 0; a < DIG_AXES && status == DIG_OK; a++) {
-        status = put_gravel_plot(page, to, a, error);
+    for (int a = 0; a < DIG_AXES; a++) {
+        put_gravel_plot(page, to, a, c);
     }
     (void)fputs("</div>\n<table class=wide><tr><th>time, UTC</th>", to);
     for (int a = 0; a < DIG_AXES; a++) {
@@ -102,5 +100,4 @@ enum dig_status digreport_page_gravels(const struct digreport_page *const page, 
         put_gravel_row(to, &shift->gravel[i]);
     }
     (void)fputs("</table>\n", to);
-    return status;
 }

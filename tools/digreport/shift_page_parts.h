@@ -25,11 +25,9 @@ bool digreport_page_any(size_t n, const double value[]);
 
 /// Number, peak, energy and error of the digs over time, and a table of them. DIG_ENOMEM, or as
 /// dig_plot_figure().
-DIG_MUST_CHECK enum dig_status digreport_page_digs(const struct digreport_page *page, FILE *to,
-                                                   struct dig_error *error);
+void digreport_page_digs(const struct digreport_page *page, FILE *to, struct dig_conditions *c);
 
 /// The gravel over time, and a table of what was identified. Fails likewise.
-DIG_MUST_CHECK enum dig_status digreport_page_gravels(const struct digreport_page *page, FILE *to,
-                                                      struct dig_error *error);
+void digreport_page_gravels(const struct digreport_page *page, FILE *to, struct dig_conditions *c);
 
 #endif // DIG_TOOLS_DIGREPORT_SHIFT_PAGE_PARTS_H
