@@ -230,6 +230,24 @@ enum dig_status dig_air_make(const struct dig_machine *const machine, const size
     return DIG_OK;
 }
 
+const char *dig_file_error_text(const enum dig_file_error error)
+{
+    static const char *const text[DIG_FILE_ERRORS] = {
+        [DIG_FILE_LEVEL_rad] = "the machine's pitch",
+        [DIG_FILE_LINKS]     = "the boom's mass",
+        "where the boom's mass lies",
+        "where the boom's mass lies",
+        "the arm's mass",
+        "where the arm's mass lies",
+        "where the arm's mass lies",
+        "the bucket's mass",
+        "where the bucket's mass lies",
+        "where the bucket's mass lies",
+    };
+    assert(error < DIG_FILE_ERRORS);
+    return text[error];
+}
+
 void dig_file_correct(const double file[DIG_FILE_ERRORS], struct dig_correction *const correction)
 {
     assert(file != NULL && correction != NULL);

@@ -48,6 +48,9 @@ enum dig_file_error {
     DIG_FILE_ERRORS = DIG_FILE_LINKS + 3 * DIG_JOINTS
 };
 
+/// What is wrong then, for people: "the machine's pitch".
+const char *dig_file_error_text(enum dig_file_error error);
+
 /// 1 sigma of the pitch of a machine that records none.
 #define DIG_FILE_LEVEL_SIGMA_rad (0.5 * DIG_RAD_PER_DEG)
 

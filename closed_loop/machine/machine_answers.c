@@ -204,6 +204,7 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
 {
     struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
     struct numbers        numbers;
+    double                widths[DIG_LINES_COLUMNS_MAX];
     size_t                n   = 0;
     unsigned              set = 0;
     for (size_t e = 0; e < effects; e++) {
@@ -221,6 +222,11 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                                            .wide         = wide,
                                            .log_evidence = solved.log_evidence };
     list_numbers(&s->fit.lines, effects, effect, &numbers);
+    dig_fit_widths(&s->fit, set, solved.width, widths);
+    if (s->unlike.is && effects == 0) {
+        widths[s->unlike.column] = DIG_UNLIKE_WIDTH;
+        dig_fit_solve_each(&s->fit, widths, &solved);
+    }
     for (size_t e = 0; e < effects; e++) {
         const struct dig_model_effect now = dig_machine_effect(s, effect[e].effect, 0.0);
         answer->effect[e]                 = effect[e];
@@ -232,8 +238,6 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
     memcpy(&answer->value[n], answer->file, sizeof answer->file);
     write_steps(s, &numbers, answer);
     if (answer->numbers > 0) {
-        double widths[DIG_LINES_COLUMNS_MAX];
-        dig_fit_widths(&s->fit, set, solved.width, widths);
         write_others(s, &numbers, widths, answer);
     }
     return true;

@@ -254,6 +254,34 @@ static void doubt_names(struct dig_machine_search *const s)
     }
 }
 
+// Where a file that is wrong in one thing by more than it allows explains no less than the effects
+// found, these have no claim to it.
+static void doubt_file(struct dig_machine_search *const s)
+{
+    s->unlike = dig_machine_unlike_ask(&s->fit, s->level);
+    if (s->set != 0 &&
+        s->unlike.log_evidence < s->fit.log_none + dig_fit_evidence(&s->fit, s->set)) {
+        s->unlike.is = false;
+    }
+}
+
+static void write_unlike(const struct dig_machine_search *const s,
+                         struct dig_machine_finding *const      finding)
+{
+    const struct dig_lines_column *const of = &s->fit.lines.column[s->unlike.column];
+    finding->effects                        = 0;
+    finding->sets                           = 0;
+    finding->unexplained                    = true;
+    finding->follows = dig_file_error_text((enum dig_file_error)of->parameter);
+    finding->unlike  = (struct dig_machine_unlike_file){
+         .is           = true,
+         .log_evidence = s->unlike.log_evidence - s->fit.log_none,
+         .error        = (enum dig_file_error)of->parameter,
+         .value        = finding->none.file[of->parameter],
+         .allowed      = of->scale,
+    };
+}
+
 // What is left without any effect, over what rows scatter by.
 static void write_residuals(const struct dig_machine_search *const s,
                             struct dig_machine_finding *const      finding)
@@ -282,9 +310,12 @@ static void write_finding(struct dig_machine_search *const s, const uint64_t see
     double inclusion[DIG_MACHINE_EFFECTS];
     doubt_names(s);
     const bool unclear = dig_machine_is_unclear(s) || s->drift.follows != NULL;
+    if (!unclear) {
+        doubt_file(s);
+    }
     *finding = (struct dig_machine_finding){ .unexplained = unclear, .follows = s->drift.follows };
     write_residuals(s, finding);
-    finding->significant = s->set != 0 || unclear;
+    finding->significant = s->set != 0 || unclear || s->unlike.is;
     bootstrap(s, seed, inclusion);
     write_candidates(s, inclusion, finding);
     write_own_payload(s, own_payload_kg);
@@ -292,10 +323,14 @@ static void write_finding(struct dig_machine_search *const s, const uint64_t see
         dig_machine_write_none(s, finding);
         write_effects(s, inclusion, finding);
         write_sets(s, finding);
+        if (s->unlike.is) {
+            write_unlike(s, finding);
+        }
         dig_machine_write_answers(s, finding);
     }
     finding->p_complete =
-        fmin(1.0, DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
+        fmin(s->unlike.is ? s->unlike.p : 1.0,
+             DIG_MACHINE_EFFECTS * exp(-fmax(finding->candidate[0].log_evidence, 0.0)));
 }
 
 enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
@@ -303,7 +338,8 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
                                        struct dig_machine_finding *const finding)
 {
     assert(side != NULL && finding != NULL && false_alarm > 0.0);
-    struct dig_machine_search s      = { .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
+    struct dig_machine_search s      = { .level = false_alarm,
+                                         .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
     enum dig_status           status = search_make(side, &s);
     if (status == DIG_OK && s.air.rows == 0) {
         *finding = (struct dig_machine_finding){ .p_complete   = 1.0,

@@ -7,6 +7,7 @@
 #include "closed_loop/machine/machine_drift.h"
 #include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_side.h"
+#include "closed_loop/machine/machine_unlike.h"
 #include "closed_loop/machine_digs/machine_dig.h"
 
 struct dig_machine_side {
@@ -29,12 +30,14 @@ struct dig_machine_search {
     struct dig_fit           fit;
     unsigned                 set;
     double                   noise2;     // variance that rows may have without being unclear
+    double                   level;      // false alarms
     double                   least;      // log evidence that an effect must bring
     double                   rest2_none; // without any effect, not linear
     double                   rest2; // with the set, not linear, rows as far as they are trusted
     double                   slow;  // of it, in the means of segments: chi-squared
     double                   none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
     struct dig_machine_drift drift;                     // that explains as much as the set, or none
+    struct dig_machine_unlike unlike;                   // what of the file does, or none
 };
 
 /// Chooses the set that explains the air, beginning without effects, and leaves out rows in which
@@ -49,7 +52,8 @@ bool dig_machine_is_unclear(const struct dig_machine_search *s);
 struct dig_model_effect dig_machine_effect(const struct dig_machine_search *s,
                                            enum dig_effect_id id, double probability);
 
-/// The answer without an effect, with the errors of the file.
+/// The answer without an effect, with the errors of the file; one that is larger than the file
+/// allows has a prior of DIG_UNLIKE_WIDTH.
 void dig_machine_write_none(struct dig_machine_search *s, struct dig_machine_finding *finding);
 
 /// The set found, where it is of several effects, and every candidate alone, each with the

@@ -62,6 +62,14 @@ struct dig_machine_answer {
     struct dig_machine_other other[DIG_MACHINE_OTHERS];
 };
 
+/// An error of the file that is larger than it allows, where free air shows one.
+struct dig_machine_unlike_file {
+    bool                is;
+    enum dig_file_error error;
+    double              value, allowed; // 1 sigma
+    double              log_evidence;   // of free air, against a file within its tolerance
+};
+
 /// What free air says.
 struct dig_machine_finding {
     bool                      significant; // something of the machine is missing
@@ -79,8 +87,9 @@ struct dig_machine_finding {
     size_t                    answers; // the set found, if of several, and each candidate alone
     struct dig_machine_answer answer[DIG_MACHINE_ANSWERS];
     bool        by_digs; // the effects are told by free air and the digs together, not by air alone
-    bool        unexplained; // significant, and no effect of the machine explains it
-    const char *follows;     // what pressures that drift then follow, for people; NULL: not told
+    bool        unexplained;               // significant, and no effect of the machine explains it
+    const char *follows;                   // what it then depends on, for people; NULL: not told
+    struct dig_machine_unlike_file unlike; // unexplained unless the digs tell it; corrected in them
 };
 
 /// Traces in the air of the fit and identify digs only, at this false-alarm rate, and remembers

@@ -196,6 +196,8 @@ static void write_choice(const struct choice *const choice, const double least,
     }
     air->effects     = best->effects;
     air->significant = true;
+    air->unexplained = false;
+    air->unlike.is   = false;
     air->p_complete =
         fmin(air->p_complete, (double)air->candidates * exp(-fmax(choice->evidence, 0.0)));
 }
@@ -224,12 +226,14 @@ static void write_none(const bool significant, struct dig_machine_finding *const
 
 static enum dig_status choose(struct dig_trace_work *const w, struct choice *const choice)
 {
-    struct dig_machine_finding *const air     = w->air;
-    const double                      level   = w->settings->false_alarm / 2.0;
-    const double                      least   = log((double)air->candidates / level);
-    double                            unnamed = -INFINITY;
-    struct dig_machine_answer         none    = air->none;
-    double                            z[DIG_STEPS_MAX];
+    struct dig_machine_finding *const air   = w->air;
+    const double                      level = w->settings->false_alarm / 2.0;
+    const double                      least = log((double)air->candidates / level);
+    // Evidence of a file that is wrong by more than it allows: the digs as they were measured have
+    // it taken off.
+    double unnamed                 = air->unlike.is ? air->unlike.log_evidence : (double)-INFINITY;
+    struct dig_machine_answer none = air->none;
+    double                    z[DIG_STEPS_MAX];
     choice->evidence       = -INFINITY;
     enum dig_status status = weigh_digs(w, &none, none.numbers > 0, &choice->soil0, z);
     dig_machine_steps_values(z, NULL, &none);
@@ -250,7 +254,7 @@ static enum dig_status choose(struct dig_trace_work *const w, struct choice *con
     if (choice->evidence >= fmax(least, unnamed)) {
         write_choice(choice, least, air);
     } else {
-        write_none(unnamed >= least, air);
+        write_none(air->unlike.is || unnamed >= least, air);
         choice->best = none;
         memcpy(choice->z, z, sizeof choice->z);
     }

@@ -1,6 +1,7 @@
 // Advice of a trace for people: the ground in which effects are explained, and what to do next.
 
 #include "closed_loop/verdict/trace_work.h"
+#include "core/units.h"
 #include "estimator/effects/effect.h"
 #include "tables/scene.h"
 
@@ -109,6 +110,25 @@ static void advise_on_size(const struct dig_trace_work *const w, struct dig_trac
     }
 }
 
+// What of the machine's file is wrong by more than it allows.
+static void advise_on_file(const struct dig_machine_unlike_file *const unlike,
+                           struct dig_trace *const                     trace)
+{
+    const char *const what = dig_file_error_text(unlike->error);
+    if (unlike->error == DIG_FILE_LEVEL_rad) {
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "by free air the machine was pitched by %.1f degrees and did not say so: "
+                       "record its pitch",
+                       unlike->value / DIG_RAD_PER_DEG);
+    } else {
+        const bool mass = (unlike->error - DIG_FILE_LINKS) % 3 == 0;
+        (void)snprintf(trace->advice, sizeof trace->advice,
+                       "by free air %s differs from the machine's file by %.0f %s, which allows "
+                       "%.0f: mend the file",
+                       what, unlike->value, mass ? "kg" : "kg m", unlike->allowed);
+    }
+}
+
 // First, where the recordings hold no free air, that they do not.
 static void advise_on_air(struct dig_trace *const trace)
 {
@@ -123,6 +143,9 @@ enum dig_status dig_trace_explain(const struct dig_trace_work *const w,
 {
     assert(w != NULL && trace != NULL);
     advise(w, trace);
+    if (w->air->unlike.is && trace->advice[0] == '\0') {
+        advise_on_file(&w->air->unlike, trace);
+    }
     advise_on_size(w, trace);
     if (w->air->no_air) {
         advise_on_air(trace);

@@ -57,12 +57,13 @@ static inline int tear_down(void **state)
 
 // What the machine does that its file does not say.
 struct fault {
-    double dry_N;     // the bucket cylinder's seal, against its motion
-    double held_N;    // seals of all drives that bend .2 mm before they slip, and stay bent
-    double rod_Pa;    // the bucket's rod side sensor reads so much more
-    double gain;      // the bucket's head side sensor reads 1 + this times what is there
-    double boom_gain; // the boom's, likewise
-    double late_s;    // pressures are so old
+    double dry_N;       // the bucket cylinder's seal, against its motion
+    double held_N;      // seals of all drives that bend .2 mm before they slip, and stay bent
+    double rod_Pa;      // the bucket's rod side sensor reads so much more
+    double gain;        // the bucket's head side sensor reads 1 + this times what is there
+    double boom_gain;   // the boom's, likewise
+    double late_s;      // pressures are so old
+    double pitched_rad; // the machine, nose up, and its pitch is not recorded
     double heavier_kg[DIG_JOINTS]; // a link, in its centre of mass
     double angle_rad[DIG_JOINTS];  // its sensor reads so much more
     double payload_kg;             // in the middle of the bucket, from the second dig on
@@ -176,6 +177,28 @@ static inline double slew_N(const struct dig_rig_row *const row, const int j, co
     return -work_J / 1e-5 / lever_m;
 }
 
+// What a drive holds more where the machine's weights pull another way: by their work over a small
+// turn of the joint.
+static inline double pitch_N(const struct dig_rig_row *const row, const int j, const double rad)
+{
+    if (!(fabs(rad) > 0.0)) {
+        return 0.0;
+    }
+    double                     lever_m;
+    double                     work_J = 0.0;
+    const struct dig_rig_front at     = dig_rig_front_at(&machine, &row->joints);
+    struct dig_rig_joints      turned = row->joints;
+    turned.rad[j] += 1e-5;
+    const struct dig_rig_front to = dig_rig_front_at(&machine, &turned);
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        const struct dig_vec2 by = dig_vec2_sub(to.com_m[k], at.com_m[k]);
+        work_J += 9.81 * machine.link[k].mass_kg * (sin(rad) * by.x + (cos(rad) - 1.0) * by.y);
+    }
+    assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
+                     DIG_OK);
+    return work_J / 1e-5 / lever_m;
+}
+
 static inline void lose(struct dig_sample *const sample, const enum dig_signal signal)
 {
     sample->valid[signal] = false;
@@ -192,6 +215,9 @@ static inline void lose_readings(const struct fault *const fault, uint64_t *cons
     }
     for (int s = DIG_SIGNAL_BOOM_HEAD_Pa; s <= DIG_SIGNAL_ARM_ROD_Pa && fault->bare; s++) {
         lose(sample, (enum dig_signal)s);
+    }
+    if (fabs(fault->pitched_rad) > 0.0) {
+        lose(sample, DIG_SIGNAL_PITCH_rad);
     }
 }
 
@@ -282,6 +308,7 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
             for (int link = j; link < DIG_JOINTS; link++) {
                 push_more(&row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
             }
+            push_more(&row, j, pitch_N(&row, j, fault->pitched_rad));
             push_more(&row, j, slew_N(&row, j, slewing_radps(fault, i, slew_from, slew_to)));
             push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }

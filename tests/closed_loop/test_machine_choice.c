@@ -85,6 +85,28 @@ TEST(what_free_air_leaves_open_of_an_effect_without_a_name_is_open_in_the_gravel
     dig_trace_finish(&result);
 }
 
+// It has no name, but the digs are told with its pitch.
+TEST(a_machine_that_leans_says_so_and_leaves_the_gravel)
+{
+    const struct fault leans  = { .pitched_rad = 3.0 * DIG_RAD_PER_DEG };
+    const struct fault none   = { .boom_gain = 0.0 };
+    struct dig_trace   result = traced(&leans, 6);
+    struct dig_trace   oracle = traced(&none, 6);
+    print_message("%s; error %.3f to %.3f, of a level one %.3f\n", result.advice,
+                  result.before.value, result.after.value, oracle.after.value);
+    assert_int_equal(result.effects, 1);
+    assert_int_equal(result.effect[0].effect, DIG_EFFECT_UNLISTED);
+    assert_string_equal(result.unlisted->depends_on, "the machine's pitch");
+    assert_non_null(strstr(result.advice, "pitched by"));
+    assert_true(result.significant && result.after.value < 1.15 * oracle.after.value);
+    for (size_t a = 0; a < DIG_AXES; a++) {
+        assert_true(result.low.value[a] <= oracle.gravel.value[a] &&
+                    oracle.gravel.value[a] <= result.high.value[a]);
+    }
+    dig_trace_finish(&oracle);
+    dig_trace_finish(&result);
+}
+
 TEST(a_machine_as_its_file_says_is_left_alone)
 {
     const struct fault none   = { .gain = 0.0 };

@@ -124,6 +124,39 @@ TEST(a_machine_within_its_files_tolerance_is_no_effect)
     end(clean);
 }
 
+// Half a degree is allowed for. A machine that leans farther is not the one of its file, and the
+// digs are told with what it leans.
+TEST(a_machine_that_leans_more_than_is_allowed_for_is_unlike_its_file)
+{
+    const struct fault     none    = { .dry_N = 0.0 };
+    const struct fault     leans   = { .pitched_rad = 0.5 * DIG_RAD_PER_DEG };
+    struct campaign *const clean   = measure(&none, 9);
+    struct campaign *const allowed = trace(&leans, 9);
+    assert_false(allowed->finding.significant || allowed->finding.unlike.is);
+    end(allowed);
+    for (int way = -1; way <= 1; way += 2) {
+        const double       rad = way * 4.0 * DIG_RAD_PER_DEG;
+        const struct fault far = { .pitched_rad = rad };
+
+        struct campaign *const                      c      = trace(&far, 9);
+        const struct dig_machine_unlike_file *const unlike = &c->finding.unlike;
+        assert_true(c->finding.significant && c->finding.unexplained);
+        assert_int_equal(c->finding.effects, 0);
+        assert_true(unlike->is && unlike->error == DIG_FILE_LEVEL_rad);
+        assert_close(unlike->value, rad, 0.012);
+        assert_close(unlike->value, c->finding.none.file[DIG_FILE_LEVEL_rad], 1e-12);
+        assert_string_equal(c->finding.follows, "the machine's pitch");
+        const double before = apart_in(DIG_CHANNEL_FZ_N, c, clean, false);
+        take_off_with(c, c->finding.none.file);
+        const double after = apart_in(DIG_CHANNEL_FZ_N, c, clean, true);
+        print_message("pitched by %.4f rad, said %.4f; Fz: %.4f off before, %.4f after\n", rad,
+                      unlike->value, before, after);
+        assert_true(after < 0.2 * before);
+        end(c);
+    }
+    end(clean);
+}
+
 static bool is_reported(const struct dig_machine_finding *const finding,
                         const enum dig_effect_id                effect)
 {
