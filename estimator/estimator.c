@@ -3,6 +3,7 @@
 #include "core/linkage.h"
 #include "estimator/estimator_state.h"
 #include "estimator/track/ending.h"
+#include "estimator/track/frame.h"
 
 #include <assert.h>
 #include <math.h>
@@ -74,12 +75,19 @@ static struct dig_path_point rig_point(const struct dig_estimator *const e,
 }
 
 // Starts path and tracks at contact.
-static void start_path(struct dig_estimator *const e, const struct dig_path_point *const contact)
+static void start_path(struct dig_estimator *const e, const struct dig_path_point *const contact,
+                       const double pitch_rad)
 {
     dig_recorded_dig_contact(e->recording, contact);
+    e->pitched = fabs(pitch_rad) > 0.0;
     for (size_t t = 0; t < e->set->trajectories; t++) {
         e->follower[t] =
             dig_follower_start(&e->route[t], &e->recording->path, e->settings.path_limit_m);
+        if (e->pitched) {
+            e->world[t] = dig_frame_route(&e->route[t], pitch_rad, e->set->tooth_m);
+            e->in_world[t] =
+                dig_follower_start(&e->world[t], &e->recording->path, e->settings.path_limit_m);
+        }
     }
 }
 
@@ -95,10 +103,14 @@ static int choose_trajectory(struct dig_estimator *const        e,
     const double limit_m = e->settings.path_limit_m;
     dig_follower_step(&e->route[e->next_follower], &e->recording->path, limit_m,
                       &e->follower[e->next_follower]);
+    if (e->pitched) {
+        dig_follower_step(&e->world[e->next_follower], &e->recording->path, limit_m,
+                          &e->in_world[e->next_follower]);
+    }
 
     const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < tracks; t++) {
-        track_of[t] = &e->follower[t].track;
+        track_of[t] = dig_estimator_track(e, t);
     }
     const int chosen = dig_track_choose(tracks, track_of, limit_m, e->choice.candidate);
     return dig_choice_step(&e->choice, tracks, chosen);
@@ -119,15 +131,16 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         e->off_path_m = (double)NAN;
         return;
     }
-    const struct dig_track *const track = &e->follower[trajectory].track;
+    const struct dig_track *const track = dig_estimator_track(e, (size_t)trajectory);
 
     // Around the progress of the last tick and of the last vertex in soil.
     const double behind = fmin(fmin(e->progress, 1.0), track->progress) - search_behind;
     const double ahead  = fmax(fmax(e->progress, 0.0), track->progress) + search_ahead;
 
-    const struct dig_path_point at    = dig_track_turned(track, point);
-    const struct dig_projection place = dig_route_project(
-        &e->route[trajectory], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
+    const struct dig_path_point at = dig_track_turned(track, point);
+    const struct dig_projection place =
+        dig_route_project(dig_estimator_route(e, (size_t)trajectory), track->dx_m, track->dz_m, &at,
+                          behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
 }
@@ -155,18 +168,18 @@ static void finish_dig(struct dig_estimator *const e)
 
 // Steps phase, window and path by one valid moment.
 static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, const double dt_s,
-                       const struct dig_wrench *const     wrench,
+                       const struct dig_wrench *const wrench, const double pitch_rad,
                        const struct dig_path_point *const point,
                        const double                       joint_rad[const DIG_JOINTS])
 {
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
                        wrench->slow_sigma_My_Nm);
-    dig_recorded_dig_add(e->recording, e->set, e->lambda, time_ns, wrench, e->phase.bias_Nm, point,
-                         joint_rad);
+    dig_recorded_dig_add(e->recording, e->set, e->lambda, time_ns, wrench, e->phase.bias_Nm,
+                         pitch_rad, point, joint_rad);
 
     switch (event) {
-    case DIG_EVENT_CONTACT: start_path(e, point); break;
+    case DIG_EVENT_CONTACT: start_path(e, point, pitch_rad); break;
     case DIG_EVENT_LOST: dig_estimator_clear_dig(e); break;
     case DIG_EVENT_FINISHED: finish_dig(e); break;
     case DIG_EVENT_NONE:
@@ -206,11 +219,13 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
     const double step_s = fmin(dt_s, longest_step_s);
 
     // A sample without a moment is skipped; the dig goes on with the next one.
-    const struct dig_path_point point                 = rig_point(e, &front);
-    const double *const         at                    = front.attitude_rad;
-    const double                joint_rad[DIG_JOINTS] = { at[0], at[1] - at[0], at[2] - at[1] };
+    const struct dig_path_point point = rig_point(e, &front);
+    const double                pitch_rad =
+        sample->valid[DIG_SIGNAL_PITCH_rad] ? sample->value[DIG_SIGNAL_PITCH_rad] : 0.0;
+    const double *const at                    = front.attitude_rad;
+    const double        joint_rad[DIG_JOINTS] = { at[0], at[1] - at[0], at[2] - at[1] };
     if (wrench.moment_valid) {
-        follow_dig(e, sample->time_ns, step_s, &wrench, &point, joint_rad);
+        follow_dig(e, sample->time_ns, step_s, &wrench, pitch_rad, &point, joint_rad);
         wrench.My_Nm -= e->phase.bias_Nm;
     }
     const enum dig_motion motion =
@@ -223,6 +238,7 @@ enum dig_status dig_estimator_step(struct dig_estimator *const    estimator,
         .pin_Z_m    = front.pin_m[DIG_JOINT_BUCKET].y,
         .phi_rad    = at[DIG_JOINT_BUCKET],
         .joint_rad  = { joint_rad[0], joint_rad[1], joint_rad[2] },
+        .pitch_rad  = pitch_rad,
         .phase      = e->phase.phase,
         .dig_count  = e->digs,
         .trajectory = e->choice.current,

@@ -26,6 +26,23 @@ bool dig_estimator_is_idle(const struct dig_estimator *const estimator)
     return !estimator->recording->window.open;
 }
 
+static bool lies_in_world(const struct dig_estimator *const e, const size_t t)
+{
+    return e->pitched && e->in_world[t].track.rms_m < e->follower[t].track.rms_m;
+}
+
+const struct dig_track *dig_estimator_track(const struct dig_estimator *const e, const size_t t)
+{
+    assert(e != NULL && t < e->set->trajectories);
+    return lies_in_world(e, t) ? &e->in_world[t].track : &e->follower[t].track;
+}
+
+const struct dig_route *dig_estimator_route(const struct dig_estimator *const e, const size_t t)
+{
+    assert(e != NULL && t < e->set->trajectories);
+    return lies_in_world(e, t) ? &e->world[t] : &e->route[t];
+}
+
 bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
 {
     assert(estimator != NULL);
@@ -36,7 +53,7 @@ bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
         return true;
     }
     for (size_t t = 0; off && t < estimator->set->trajectories; t++) {
-        off = estimator->follower[t].track.rms_m > estimator->settings.path_limit_m;
+        off = dig_estimator_track(estimator, t)->rms_m > estimator->settings.path_limit_m;
     }
     return off;
 }

@@ -32,7 +32,7 @@ files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json 
                        recording_csv scene_yaml
 estimator              estimator
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
-estimator/track        inertia phase recorded_dig route settings track window | abort_detection ending estimate
+estimator/track        frame inertia phase recorded_dig route settings track window | abort_detection ending estimate
                        motion
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
                        approach_response interpolate live_recording observe_dig | laid

@@ -6,6 +6,7 @@
 #include "core/entry_set.h"
 #include "core/observation.h"
 #include "estimator/approach/approach_slots.h"
+#include "estimator/track/frame.h"
 #include "estimator/track/window.h"
 #include "estimator/wrench/wrench.h"
 
@@ -104,15 +105,8 @@ static struct dig_window_sample sample_of(const struct dig_machine_dig *const di
 {
     const struct dig_wrench *const w = &r->wrench;
 
-    // x runs against X.
-    const double c = cos(dig->frame_rad);
-    const double s = sin(dig->frame_rad);
-
-    const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, c * w->Fx_N + s * w->Fz_N,
-                                                c * w->Fz_N - s * w->Fx_N };
-    const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm,
-                                                hypot(c * w->sigma_Fx_N, s * w->sigma_Fz_N),
-                                                hypot(c * w->sigma_Fz_N, s * w->sigma_Fx_N) };
+    const double value[DIG_FORCE_CHANNELS]  = { w->My_Nm, w->Fx_N, w->Fz_N };
+    const double sigmas[DIG_FORCE_CHANNELS] = { w->sigma_My_Nm, w->sigma_Fx_N, w->sigma_Fz_N };
 
     struct dig_window_sample sample = { .time_s     = dig->time_s[at] / sqrt(dig->lambda),
                                         .pose       = r->pose,
@@ -126,6 +120,7 @@ static struct dig_window_sample sample_of(const struct dig_machine_dig *const di
         sample.sigma[k] = (float)(sigmas[k] / scale);
         sample.slow[k]  = (float)(slow / scale);
     }
+    dig_frame_turn_forces(dig->frame_rad, &sample);
     return sample;
 }
 

@@ -5,6 +5,7 @@
 #include "closed_loop/machine_digs/pressure_units.h"
 #include "core/sample.h"
 #include "estimator/approach/approach_route.h"
+#include "estimator/track/frame.h"
 #include "estimator/track/recorded_dig.h"
 
 #include <assert.h>
@@ -32,9 +33,10 @@ struct dig_path_point dig_machine_dig_point(const struct dig_curve_set *const   
                                             const struct dig_machine_dig *const dig,
                                             const struct dig_front *const       front)
 {
-    const struct dig_vec2 pin = dig_vec2_turned(front->pin_m[DIG_JOINT_BUCKET], dig->frame_rad);
-    return dig_recorded_dig_point(set, dig->lambda, pin.x, pin.y,
-                                  front->attitude_rad[DIG_JOINT_BUCKET] + dig->frame_rad);
+    const struct dig_vec2 *const pin = &front->pin_m[DIG_JOINT_BUCKET];
+    const struct dig_path_point  own = dig_recorded_dig_point(set, dig->lambda, pin->x, pin->y,
+                                                              front->attitude_rad[DIG_JOINT_BUCKET]);
+    return dig_frame_turned(&own, dig->frame_rad, set->tooth_m);
 }
 
 static struct dig_path_point point_of(const struct dig_machine *const     machine,

@@ -25,8 +25,8 @@ void dig_live_recording_add(struct dig_live_recording *const  live,
     }
     const struct dig_path_point point =
         dig_recorded_dig_point(set, lambda, e->pin_X_m, e->pin_Z_m, e->phi_rad);
-    dig_recorded_dig_add(&live->recording, set, lambda, e->time_ns, &e->wrench, 0.0, &point,
-                         e->joint_rad);
+    dig_recorded_dig_add(&live->recording, set, lambda, e->time_ns, &e->wrench, 0.0, e->pitch_rad,
+                         &point, e->joint_rad);
 
     const bool in_soil = e->phase == DIG_PHASE_CONTACT || e->phase == DIG_PHASE_DIG;
     if (!live->digging && e->phase == DIG_PHASE_CONTACT) {
@@ -55,6 +55,8 @@ enum dig_status dig_live_recording_observe(const struct dig_curve_set *const    
     const struct dig_window *const window = &live->recording.window;
     scratch->dig_count                    = live->dig_count + 1;
     scratch->path                         = live->recording.path;
+    scratch->pitch_rad                    = live->recording.pitch_rad;
+    scratch->pitched                      = live->recording.pitched;
     scratch->window.open                  = true;
     scratch->window.in_progress           = true;
     scratch->window.count                 = window->count;

@@ -8,6 +8,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 // The soil is searched from deeper than the table was dug by this factor, to detect digs off it.
 static const double probe_deeper = 1.5;
@@ -68,6 +69,40 @@ static void make_routes(const struct dig_curve_set *const set,
     }
 }
 
+static double nearest_m(const size_t routes, const struct dig_track track[])
+{
+    double least_m = INFINITY;
+    for (size_t r = 0; r < routes; r++) {
+        least_m = fmin(least_m, track[r].rms_m);
+    }
+    return least_m;
+}
+
+// Fits the path in the machine's frame and, where that is pitched, in the world's, and leaves it in
+// that in which it lies nearer a trajectory. Which trajectory: -1: none.
+static int fit_path(const struct dig_curve_set *const set, const double limit_m,
+                    const struct dig_route route[], struct dig_recorded_dig *const recording,
+                    struct dig_track fitted[const DIG_TRAJECTORY_MAX])
+{
+    const double     pitch_rad = dig_recorded_dig_pitch_rad(recording);
+    struct dig_track turned[DIG_TRAJECTORY_MAX];
+    const int own = dig_track_fit_all(set->trajectories, route, &recording->path, limit_m, fitted);
+    if (!(fabs(pitch_rad) > 0.0)) {
+        return own;
+    }
+    dig_recorded_dig_turn(recording, set, pitch_rad);
+    const int world =
+        dig_track_fit_all(set->trajectories, route, &recording->path, limit_m, turned);
+    if (nearest_m(set->trajectories, turned) < nearest_m(set->trajectories, fitted)) {
+        memcpy(fitted, turned, set->trajectories * sizeof turned[0]);
+        // It is not turned again, where it is observed again.
+        recording->pitch_rad = 0.0;
+        return world;
+    }
+    dig_recorded_dig_turn(recording, set, -pitch_rad);
+    return own;
+}
+
 // Chooses the trajectory by the whole path, and observes along it.
 enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const          set,
                                          const struct dig_estimator_settings *const settings,
@@ -79,8 +114,7 @@ enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const      
     struct dig_route route[DIG_TRAJECTORY_MAX];
     struct dig_track fitted[DIG_TRAJECTORY_MAX];
     make_routes(set, route);
-    const int chosen =
-        dig_track_fit_all(set->trajectories, route, &recording->path, limit_m, fitted);
+    const int chosen = fit_path(set, limit_m, route, recording, fitted);
     if (chosen < 0) {
         return DIG_ENOMATCH;
     }

@@ -16,6 +16,7 @@ struct dig_estimate {
     struct dig_wrench wrench;
     double            pin_X_m, pin_Z_m, phi_rad; // pin and absolute direction pin -> tooth, machine
     double            joint_rad[DIG_JOINTS];     // boom, arm, bucket; by a force sensor boom, arm 0
+    double            pitch_rad;                 // of the machine; 0 where it does not say
     enum dig_dig_phase phase;
     uint32_t           dig_count; // digs finished since start
     int             trajectory;   // of the dig in progress, index into the curve set; -1: not known

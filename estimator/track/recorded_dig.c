@@ -1,6 +1,7 @@
 #include "estimator/track/recorded_dig.h"
 
 #include "core/units.h"
+#include "estimator/track/frame.h"
 
 #include <assert.h>
 #include <math.h>
@@ -25,6 +26,8 @@ void dig_recorded_dig_contact(struct dig_recorded_dig *const     recording,
 {
     assert(recording != NULL && point != NULL);
     dig_window_open(&recording->window);
+    recording->pitch_rad = 0.0;
+    recording->pitched   = 0.0;
     for (size_t i = 0; i < recording->window.count; i++) {
         (void)dig_path_add(&recording->path, &recording->window.sample[i].pose, false);
     }
@@ -47,8 +50,9 @@ struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *const s
 void dig_recorded_dig_add(struct dig_recorded_dig *const    recording,
                           const struct dig_curve_set *const set, const double lambda,
                           const int64_t time_ns, const struct dig_wrench *const wrench,
-                          const double bias_Nm, const struct dig_path_point *const point,
-                          const double joint_rad[const DIG_JOINTS])
+                          const double bias_Nm, const double pitch_rad,
+                          const struct dig_path_point *const point,
+                          const double                       joint_rad[const DIG_JOINTS])
 {
     assert(recording != NULL && set != NULL && wrench != NULL && point != NULL);
     assert(joint_rad != NULL);
@@ -56,6 +60,8 @@ void dig_recorded_dig_add(struct dig_recorded_dig *const    recording,
     const double hole_s = sqrt(lambda) * dig_window_hole_s(set->smooth_half_s);
     recording->missing |= recording->window.open && step_s > hole_s;
     recording->last_ns = time_ns;
+    recording->pitch_rad += pitch_rad;
+    recording->pitched += 1.0;
 
     const double                   lambda3 = lambda * lambda * lambda;
     const double                   lambda4 = lambda * lambda3;
@@ -73,6 +79,27 @@ void dig_recorded_dig_add(struct dig_recorded_dig *const    recording,
                     (float)(wrench->slow_sigma_Fz_N / lambda3) },
     };
     dig_window_add(&recording->window, &sample);
+}
+
+double dig_recorded_dig_pitch_rad(const struct dig_recorded_dig *const recording)
+{
+    assert(recording != NULL);
+    return recording->pitched > 0.0 ? recording->pitch_rad / recording->pitched : 0.0;
+}
+
+void dig_recorded_dig_turn(struct dig_recorded_dig *const    recording,
+                           const struct dig_curve_set *const set, const double pitch_rad)
+{
+    assert(recording != NULL && set != NULL);
+    struct dig_path *const path = &recording->path;
+    for (size_t i = 0; i < path->vertices; i++) {
+        path->vertex[i] = dig_frame_turned(&path->vertex[i], pitch_rad, set->tooth_m);
+    }
+    for (size_t i = 0; i < recording->window.count; i++) {
+        struct dig_window_sample *const sample = &recording->window.sample[i];
+        sample->pose = dig_frame_turned(&sample->pose, pitch_rad, set->tooth_m);
+        dig_frame_turn_forces(pitch_rad, sample);
+    }
 }
 
 size_t dig_recorded_dig_size(void)

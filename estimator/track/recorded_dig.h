@@ -13,6 +13,8 @@ struct dig_recorded_dig {
     uint32_t          dig_count;
     int64_t           last_ns; // time of the newest sample
     bool              missing; // samples of the dig were missing for too long: the path has a hole
+    double            pitch_rad; // of the machine, summed over the samples since contact
+    double            pitched;   // how many
     struct dig_path   path;
     struct dig_window window;
 };
@@ -30,11 +32,18 @@ void dig_recorded_dig_contact(struct dig_recorded_dig     *recording,
 struct dig_path_point dig_recorded_dig_point(const struct dig_curve_set *set, double lambda,
                                              double pin_X_m, double pin_Z_m, double phi_rad);
 
-/// Adds one wrench of the machine to the window, in rig scale and rig time.
+/// Adds one wrench of the machine, pitched by so much, to the window, in rig scale and rig time.
 void dig_recorded_dig_add(struct dig_recorded_dig *recording, const struct dig_curve_set *set,
                           double lambda, int64_t time_ns, const struct dig_wrench *wrench,
-                          double bias_Nm, const struct dig_path_point *point,
+                          double bias_Nm, double pitch_rad, const struct dig_path_point *point,
                           const double joint_rad[DIG_JOINTS]);
+
+/// How the machine was pitched since contact, in the mean.
+double dig_recorded_dig_pitch_rad(const struct dig_recorded_dig *recording);
+
+/// Turns path, poses and forces into the world's frame (frame.h), of a machine pitched by so much.
+void dig_recorded_dig_turn(struct dig_recorded_dig *recording, const struct dig_curve_set *set,
+                           double pitch_rad);
 
 /// Size of the struct, about 2 MB: for allocating one.
 size_t dig_recorded_dig_size(void);

@@ -6,10 +6,10 @@
 
 #include "closed_loop/machine/machine_side.h"
 #include "core/units.h"
+#include "tests/closed_loop/pitched_machine.h"
 #include "tests/made_table.h"
 #include "tests/model_front.h"
 #include "tests/read.h"
-#include "tools/rig/motion/mechanism.h"
 #include "tools/rig/motion/track.h"
 #include "tools/rig/sensors.h"
 
@@ -86,23 +86,6 @@ struct fault {
     bool   airless;     // recorded from the first touch of the ground to the last
 };
 
-static inline double push_N(const int j, const double head_Pa, const double rod_Pa)
-{
-    const struct dig_cylinder *const c = &machine.cylinder[j];
-    return c->count * (head_Pa * dig_cylinder_head_m2(c) - rod_Pa * dig_cylinder_rod_m2(c));
-}
-
-// Makes one row's true pressures those that push so much more.
-static inline void push_more(struct dig_rig_row *const row, const int j, const double more_N)
-{
-    struct dig_rig_pushes pushes;
-    for (int k = 0; k < DIG_JOINTS; k++) {
-        pushes.N[k] = push_N(k, row->pressures.head_Pa[k], row->pressures.rod_Pa[k]);
-    }
-    pushes.N[j] += more_N;
-    dig_rig_work_pressures(&machine, &pushes, &row->pressures);
-}
-
 static inline double rod_mps(const struct dig_rig_track *const t, const size_t i, const int j)
 {
     const size_t b = i > 0 ? i - 1 : i, a = i + 1 < t->rows ? i + 1 : i;
@@ -175,28 +158,6 @@ static inline double slew_N(const struct dig_rig_row *const row, const int j, co
     assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
                      DIG_OK);
     return -work_J / 1e-5 / lever_m;
-}
-
-// What a drive holds more where the machine's weights pull another way: by their work over a small
-// turn of the joint.
-static inline double pitch_N(const struct dig_rig_row *const row, const int j, const double rad)
-{
-    if (!(fabs(rad) > 0.0)) {
-        return 0.0;
-    }
-    double                     lever_m;
-    double                     work_J = 0.0;
-    const struct dig_rig_front at     = dig_rig_front_at(&machine, &row->joints);
-    struct dig_rig_joints      turned = row->joints;
-    turned.rad[j] += 1e-5;
-    const struct dig_rig_front to = dig_rig_front_at(&machine, &turned);
-    for (int k = 0; k < DIG_JOINTS; k++) {
-        const struct dig_vec2 by = dig_vec2_sub(to.com_m[k], at.com_m[k]);
-        work_J += 9.81 * machine.link[k].mass_kg * (sin(rad) * by.x + (cos(rad) - 1.0) * by.y);
-    }
-    assert_int_equal(dig_rig_lever_m(&machine, (enum dig_joint)j, row->joints.rad[j], &lever_m),
-                     DIG_OK);
-    return work_J / 1e-5 / lever_m;
 }
 
 static inline void lose(struct dig_sample *const sample, const enum dig_signal signal)
@@ -294,23 +255,25 @@ record(const int kind, const size_t order, const struct fault *const fault, cons
         const size_t       now   = moved > fault->stands ? moved - fault->stands : 0;
         const size_t       then  = now > late ? now - late : 0;
         struct dig_rig_row row   = t->row[then];
-        push_more(&row, DIG_JOINT_BUCKET,
+        push_more(&machine, &row, DIG_JOINT_BUCKET,
                   fault->dry_N * tanh(rod_mps(t, then, DIG_JOINT_BUCKET) / 0.002));
         bend(t, then, bent_m);
         for (int j = 0; j < DIG_JOINTS; j++) {
-            push_more(&row, j, fault->held_N * bent_m[j] / 2e-4);
+            push_more(&machine, &row, j, fault->held_N * bent_m[j] / 2e-4);
             const double time_s    = t->step_s * (double)then + 40.0 * (double)order;
             const double ground_kg = rests               ? fault->ground_kg
                                      : i < fault->stands ? fault->stands_kg
                                                          : 0.0;
-            push_more(&row, j,
+            push_more(&machine, &row, j,
                       weight_N(t, then, j, DIG_JOINT_BUCKET, carried_kg(fault, order) - ground_kg));
             for (int link = j; link < DIG_JOINTS; link++) {
-                push_more(&row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
+                push_more(&machine, &row, j, weight_N(t, then, j, link, fault->heavier_kg[link]));
             }
-            push_more(&row, j, pitch_N(&row, j, fault->pitched_rad));
-            push_more(&row, j, slew_N(&row, j, slewing_radps(fault, i, slew_from, slew_to)));
-            push_more(&row, j, fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
+            push_more(&machine, &row, j, pitch_N(&machine, &row.joints, j, fault->pitched_rad));
+            push_more(&machine, &row, j,
+                      slew_N(&row, j, slewing_radps(fault, i, slew_from, slew_to)));
+            push_more(&machine, &row, j,
+                      fault->wandering_N * (j + 1) * sin(1.7 * time_s + 2.0 * j));
         }
         row.pressures.rod_Pa[DIG_JOINT_BUCKET] += fault->rod_Pa;
         row.pressures.head_Pa[DIG_JOINT_BUCKET] *= 1.0 + fault->gain;

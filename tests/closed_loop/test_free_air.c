@@ -135,10 +135,10 @@ static double lasting_Nm(const int kind, const double each_Pa)
 {
     const struct dig_rig_track *const t = &track[kind];
 
-    const double push_sigma_N =
-        hypot(push_N(DIG_JOINT_BUCKET, each_Pa, 0.0), push_N(DIG_JOINT_BUCKET, 0.0, each_Pa));
-    double square = 0.0;
-    double count  = 0.0;
+    const double push_sigma_N = hypot(push_N(&machine, DIG_JOINT_BUCKET, each_Pa, 0.0),
+                                      push_N(&machine, DIG_JOINT_BUCKET, 0.0, each_Pa));
+    double       square       = 0.0;
+    double       count        = 0.0;
     for (size_t i = 0; i < t->rows; i++) {
         double lever_m;
         if (fabs(t->row[i].soil.M_Nm) > 0.0 &&

@@ -142,25 +142,6 @@ TEST(steps_and_noise_of_the_angles_move_no_dig)
     free(fine);
 }
 
-// Nose up by so much, all that hangs on the boom's pin as before: the boom is folded by as much,
-// and its drive, at another lever, pushes as much about the pin.
-static void stand_pitched(const double pitch_rad, struct dig_machine_recording *const r)
-{
-    for (size_t i = 0; i < r->rows; i++) {
-        double *const value = r->row[i].value;
-        double        was_m, is_m;
-        assert_int_equal(
-            dig_rig_lever_m(&machine, DIG_JOINT_BOOM, value[DIG_SIGNAL_BOOM_rad], &was_m), DIG_OK);
-        value[DIG_SIGNAL_BOOM_rad] -= pitch_rad;
-        assert_int_equal(
-            dig_rig_lever_m(&machine, DIG_JOINT_BOOM, value[DIG_SIGNAL_BOOM_rad], &is_m), DIG_OK);
-        value[DIG_SIGNAL_BOOM_HEAD_Pa] *= was_m / is_m;
-        value[DIG_SIGNAL_BOOM_ROD_Pa] *= was_m / is_m;
-        value[DIG_SIGNAL_PITCH_rad]           = pitch_rad;
-        r->row[i].valid[DIG_SIGNAL_PITCH_rad] = true;
-    }
-}
-
 TEST(a_pitched_machine_digs_level_ground_as_a_level_one_does)
 {
     static const struct fault  none        = { .dry_N = 0.0 };
@@ -173,7 +154,7 @@ TEST(a_pitched_machine_digs_level_ground_as_a_level_one_does)
             struct dig_machine_side     *side  = NULL;
             struct dig_error             error = { "" };
             m->trajectory                      = kind == 0 ? MADE_SIMPLE_A : MADE_ACTUAL;
-            stand_pitched(pitch_deg[k] * DIG_RAD_PER_DEG, &r);
+            stand_pitched(&machine, pitch_deg[k] * DIG_RAD_PER_DEG, &r);
             assert_ok(dig_machine_side_create(&machine, set, 1, &r, m, &side, &error), error);
             for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
                 double off = 0.0, square = 0.0;

@@ -5,6 +5,9 @@
 
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "closed_loop/recordings/observe.h"
+#include "core/units.h"
+#include "estimator/estimator.h"
+#include "tests/closed_loop/pitched_machine.h"
 #include "tests/made_table.h"
 #include "tests/read.h"
 #include "tools/rig/motion/track.h"
@@ -56,16 +59,28 @@ static int tear_down(void **state)
     return 0;
 }
 
-static struct dig_machine_recording record(void)
+// By a machine that stands pitched by so much on ground that is pitched alike.
+static struct dig_machine_recording record_pitched(const double pitch_rad)
 {
     struct dig_machine_recording r     = { track.rows, malloc(track.rows * sizeof *r.row) };
     struct dig_rig_noise         noise = dig_rig_noise_init(7);
     for (size_t i = 0; i < track.rows; i++) {
-        const int64_t time_ns = llround((double)i * track.step_s * 1e9) + 1;
-        r.row[i]              = dig_rig_sense(&machine, &track.row[i], time_ns, &noise);
+        const int64_t      time_ns = llround((double)i * track.step_s * 1e9) + 1;
+        struct dig_rig_row row     = track.row[i];
+        for (int j = 0; j < DIG_JOINTS && fabs(pitch_rad) > 0.0; j++) {
+            push_more(&machine, &row, j, pitch_N(&machine, &row.joints, j, pitch_rad));
+        }
+        r.row[i] = dig_rig_sense(&machine, &row, time_ns, &noise);
         dig_rig_quantise(&machine, &r.row[i]);
+        r.row[i].value[DIG_SIGNAL_PITCH_rad] = pitch_rad;
+        r.row[i].valid[DIG_SIGNAL_PITCH_rad] = true;
     }
     return r;
+}
+
+static struct dig_machine_recording record(void)
+{
+    return record_pitched(0.0);
 }
 
 // Norm of the difference over that of the moment, where both were measured.
@@ -132,6 +147,94 @@ TEST(a_dig_with_a_gap_is_seen_but_not_observed)
     assert_int_equal(digs.dig[0].trajectory, direct[0].trajectory);
     dig_observed_digs_finish(&digs);
     dig_machine_recording_finish(&r);
+}
+
+// Norm of the difference of all that both measured over that of the second.
+static double apart_of(const struct dig_observation *const a, const struct dig_observation *const b)
+{
+    double worst = 0.0;
+    for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        const double *const of_a = c == 0 ? a->moment_Nm : a->force_N[c - 1];
+        const double *const of_b = c == 0 ? b->moment_Nm : b->force_N[c - 1];
+        double              miss = 0.0, whole = 0.0;
+        for (int k = 2; k + 2 < DIG_CURVE_POINTS; k++) {
+            miss += pow(of_a[k] - of_b[k], 2.0);
+            whole += pow(of_b[k], 2.0);
+        }
+        worst = fmax(worst, sqrt(miss / whole));
+    }
+    return worst;
+}
+
+// How far along which trajectory each dig was followed while it was dug, as the daemon's tick does.
+static void expect_followed(const struct dig_machine_recording *const r)
+{
+    struct dig_estimator *const         e             = malloc(dig_estimator_size());
+    const struct dig_estimator_settings settings      = dig_estimator_settings_default();
+    struct dig_estimate                 now           = { .dig_count = 0 };
+    double                              far[DIGS + 1] = { 0.0 };
+    assert_int_equal(dig_estimator_init(e, &machine, set, &settings), DIG_OK);
+    for (size_t i = 0; i < r->rows; i++) {
+        if (dig_estimator_step(e, &r->row[i], &now) != DIG_OK || now.trajectory < 0) {
+            continue;
+        }
+        assert_int_equal(now.trajectory, direct[now.dig_count].trajectory);
+        far[now.dig_count] = fmax(far[now.dig_count], now.progress);
+    }
+    for (int d = 0; d < DIGS; d++) {
+        print_message("followed for %.3f\n", far[d]);
+        assert_true(far[d] > 0.95);
+    }
+    free(e);
+}
+
+TEST(a_pitched_machine_digs_level_ground_as_a_level_one_does)
+{
+    struct dig_machine_recording level = record();
+    struct dig_observed_digs     as    = { .digs = 0 };
+    struct dig_error             error = { "" };
+    assert_ok(dig_observe_machine(&machine, NULL, set, &level, &as, &error), error);
+    for (int way = -1; way <= 1; way += 2) {
+        struct dig_machine_recording r    = record();
+        struct dig_observed_digs     digs = { .digs = 0 };
+        stand_pitched(&machine, 3.0 * way * DIG_RAD_PER_DEG, &r);
+        assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
+        expect_both(&digs);
+        for (int d = 0; d < DIGS; d++) {
+            print_message("%d deg: %.4f off\n", 3 * way, apart_of(&digs.dig[d], &as.dig[d]));
+            assert_true(digs.dig[d].forces && as.dig[d].forces);
+            assert_true(apart_of(&digs.dig[d], &as.dig[d]) < 0.02);
+        }
+        expect_followed(&r);
+        dig_observed_digs_finish(&digs);
+        dig_machine_recording_finish(&r);
+    }
+    dig_observed_digs_finish(&as);
+    dig_machine_recording_finish(&level);
+}
+
+// Then the path lies along its trajectory in the machine's frame.
+TEST(a_machine_pitched_as_its_ground_digs_along_its_own_frame)
+{
+    struct dig_machine_recording level = record();
+    struct dig_observed_digs     as    = { .digs = 0 };
+    struct dig_error             error = { "" };
+    assert_ok(dig_observe_machine(&machine, NULL, set, &level, &as, &error), error);
+    for (int way = -1; way <= 1; way += 2) {
+        struct dig_machine_recording r    = record_pitched(3.0 * way * DIG_RAD_PER_DEG);
+        struct dig_observed_digs     digs = { .digs = 0 };
+        assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
+        expect_both(&digs);
+        for (int d = 0; d < DIGS; d++) {
+            print_message("%d deg: %.4f off\n", 3 * way, apart_of(&digs.dig[d], &as.dig[d]));
+            assert_true(apart_of(&digs.dig[d], &as.dig[d]) < 0.02);
+        }
+        expect_followed(&r);
+        dig_observed_digs_finish(&digs);
+        dig_machine_recording_finish(&r);
+    }
+    dig_observed_digs_finish(&as);
+    dig_machine_recording_finish(&level);
 }
 
 // Nothing depends on a sample in the air before the dig.
