@@ -98,7 +98,7 @@ static int choose_trajectory(struct dig_estimator *const        e,
 {
     const size_t tracks  = e->set->trajectories;
     const bool   in_soil = e->phase.phase == DIG_PHASE_CONTACT || e->phase.phase == DIG_PHASE_DIG;
-    (void)dig_path_add(&e->recording->path, point, in_soil);
+    dig_recorded_dig_follow(e->recording, point, in_soil);
     e->next_follower     = (e->next_follower + 1) % tracks;
     const double limit_m = e->settings.path_limit_m;
     dig_follower_step(&e->route[e->next_follower], &e->recording->path, limit_m,

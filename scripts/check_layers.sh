@@ -32,7 +32,7 @@ files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json 
                        recording_csv scene_yaml
 estimator              estimator
 estimator/wrench       balance correction cylinder dynamics rates statics wrench | sensed soil_wrench
-estimator/track        frame inertia phase recorded_dig route settings track window | abort_detection ending estimate
+estimator/track        frame inertia phase recorded_dig route settings track window steady | abort_detection ending estimate
                        motion
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
                        approach_response interpolate live_recording observe_dig | laid
@@ -51,7 +51,7 @@ offline_dem/device     engine_cuda | device_carry device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
 closed_loop/numeric    | dense levenberg vectors
-closed_loop/recordings measured observe | features lateness reading_noise regressors path_depth steady_path
+closed_loop/recordings measured observe | features lateness reading_noise regressors path_depth
 closed_loop/machine_digs observe_machine saturation | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | hypothesis posterior steps whitened_digs

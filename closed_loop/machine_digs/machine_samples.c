@@ -3,9 +3,8 @@
 
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "closed_loop/machine_digs/pose_jump.h"
-#include "closed_loop/recordings/steady_path.h"
 #include "core/sample.h"
-#include "core/units.h"
+#include "estimator/track/steady.h"
 #include "estimator/wrench/cylinder.h"
 
 #include <assert.h>
@@ -23,9 +22,9 @@ static const double told_share = 0.5;
 // Of the bucket's length: a step of an angle that takes the tooth no farther is as good as none.
 static const double shown_share = 0.01;
 
-// Vertices of the path that is smoothed lie as far apart as those that a dig is found by, in those
-// of an alignment.
-static const double apart = 2.5;
+// Vertices of the path that is smoothed lie as far apart, in tooth lengths, as those that a dig is
+// found by.
+static const double spacing_share = 0.025;
 
 static bool is_read(const struct dig_sample *const sample, const size_t signal)
 {
@@ -122,21 +121,27 @@ static void undo_steps(const struct dig_machine *const     machine,
 
 // Noise of the angles is smoothed as far as that of the path that they make has to be.
 static void smooth(const struct dig_machine *const machine, const struct dig_machine_dig *const dig,
-                   struct dig_force_row row[], double number[])
+                   double number[])
 {
-    struct dig_recording path = { dig->samples, row };
-    for (size_t i = 0; i < dig->samples; i++) {
+    const size_t                 n       = dig->samples;
+    const double                 tooth_m = machine->link[DIG_JOINT_BUCKET].length_m;
+    double *const                pose    = number + 4 * n + 1;
+    double *const                room[]  = { number, number + n, number + 2 * n };
+    double *const                sum     = number + 3 * n;
+    const struct dig_steady_axis axis[]  = { { pose, 1, 1.0 },
+                                             { pose + n, 1, 1.0 },
+                                             { pose + 2 * n, 1, tooth_m } };
+    for (size_t i = 0; i < n; i++) {
         const struct dig_front front =
             dig_front_place(machine, &dig->sample[i].value[DIG_SIGNAL_BOOM_rad]);
-        row[i].pin_x_m   = front.pin_m[DIG_JOINT_BUCKET].x;
-        row[i].pin_z_m   = front.pin_m[DIG_JOINT_BUCKET].y;
-        row[i].theta_deg = front.attitude_rad[DIG_JOINT_BUCKET] / DIG_RAD_PER_DEG / apart;
+        pose[i]         = front.pin_m[DIG_JOINT_BUCKET].x;
+        pose[n + i]     = front.pin_m[DIG_JOINT_BUCKET].y;
+        pose[2 * n + i] = front.attitude_rad[DIG_JOINT_BUCKET];
     }
-    const size_t far = dig_steady_smooth(&path, apart * machine->link[DIG_JOINT_BUCKET].length_m,
-                                         row + dig->samples, number);
+    const size_t far = dig_steady_smooth(n, axis, spacing_share * tooth_m, room, sum);
     for (size_t s = DIG_SIGNAL_BOOM_rad; s <= DIG_SIGNAL_BUCKET_rad; s++) {
         take(dig, s, number);
-        dig_steady_average(dig->samples, far, number, number + dig->samples);
+        dig_steady_average(n, far, number, sum);
         put(dig, s, number);
     }
 }
@@ -150,17 +155,14 @@ static enum dig_status steady(const struct dig_machine *const machine,
     if (dig_pose_jump_find(dig->samples, dig->sample, &jump)) {
         return DIG_OK;
     }
-    const size_t                n      = dig->samples;
-    struct dig_force_row *const row    = calloc(2 * n, sizeof *row);
-    double *const               number = malloc((2 * n + 1) * sizeof *number);
-    if (row != NULL && number != NULL) {
-        undo_steps(machine, dig, number);
-        smooth(machine, dig, row, number);
+    double *const number = malloc((7 * dig->samples + 1) * sizeof *number);
+    if (number == NULL) {
+        return DIG_ENOMEM;
     }
-    const enum dig_status status = row != NULL && number != NULL ? DIG_OK : DIG_ENOMEM;
-    free(row);
+    undo_steps(machine, dig, number);
+    smooth(machine, dig, number);
     free(number);
-    return status;
+    return DIG_OK;
 }
 
 void dig_machine_dig_finish(struct dig_machine_dig *const dig)

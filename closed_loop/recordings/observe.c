@@ -273,7 +273,7 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
     }
     const size_t                n      = recording->rows + 2;
     double *const               memory = calloc(7 * n, sizeof *memory);
-    struct dig_force_row *const row    = calloc(2 * n, sizeof *row);
+    struct dig_force_row *const row    = calloc(n, sizeof *row);
     if (memory == NULL || row == NULL) {
         free(memory);
         free(row);
@@ -283,7 +283,7 @@ static enum dig_status observe_any(const struct dig_curve_set *const set,
                                      memory + 3 * n,  memory + 4 * n, memory + 5 * n };
     struct dig_recording steady  = { recording->rows, row };
     memcpy(row, recording->row, recording->rows * sizeof *row);
-    dig_steady_path(&steady, set->tooth_m, row + n, columns.raw);
+    dig_steady_path(&steady, set->tooth_m, memory);
 
     const enum dig_status status = observe(set, &steady, &columns, as_dug, observed, error);
     free(memory);

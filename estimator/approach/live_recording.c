@@ -37,7 +37,7 @@ void dig_live_recording_add(struct dig_live_recording *const  live,
         dig_live_recording_clear(live, set);
     }
     if (live->digging) {
-        (void)dig_path_add(&live->recording.path, &point, in_soil);
+        dig_recorded_dig_follow(&live->recording, &point, in_soil);
     }
 }
 
@@ -55,6 +55,8 @@ enum dig_status dig_live_recording_observe(const struct dig_curve_set *const    
     const struct dig_window *const window = &live->recording.window;
     scratch->dig_count                    = live->dig_count + 1;
     scratch->path                         = live->recording.path;
+    scratch->contact_s                    = live->recording.contact_s;
+    scratch->soil_s                       = live->recording.soil_s;
     scratch->pitch_rad                    = live->recording.pitch_rad;
     scratch->pitched                      = live->recording.pitched;
     scratch->window.open                  = true;

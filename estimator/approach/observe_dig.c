@@ -114,6 +114,7 @@ enum dig_status dig_recorded_dig_observe(const struct dig_curve_set *const      
     struct dig_route route[DIG_TRAJECTORY_MAX];
     struct dig_track fitted[DIG_TRAJECTORY_MAX];
     make_routes(set, route);
+    dig_recorded_dig_steady(recording, set);
     const int chosen = fit_path(set, limit_m, route, recording, fitted);
     if (chosen < 0) {
         return DIG_ENOMATCH;

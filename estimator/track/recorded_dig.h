@@ -11,7 +11,9 @@
 /// Zeroed: empty.
 struct dig_recorded_dig {
     uint32_t          dig_count;
-    int64_t           last_ns; // time of the newest sample
+    int64_t           last_ns;           // time of the newest sample
+    double            newest_s;          // the same, rig time
+    double            contact_s, soil_s; // of the first in the soil and of the newest there
     bool              missing; // samples of the dig were missing for too long: the path has a hole
     double            pitch_rad; // of the machine, summed over the samples since contact
     double            pitched;   // how many
@@ -26,6 +28,14 @@ void dig_recorded_dig_clear(struct dig_recorded_dig *recording, const struct dig
 /// microseconds.
 void dig_recorded_dig_contact(struct dig_recorded_dig     *recording,
                               const struct dig_path_point *point);
+
+/// Adds a point of the newest sample to the path.
+void dig_recorded_dig_follow(struct dig_recorded_dig *recording, const struct dig_path_point *point,
+                             bool in_soil);
+
+/// Smooths noise and steps of the angles off the poses (steady.h), and lays the path along what is
+/// left. Uses the window's arrays, and sorts: not in the tick.
+void dig_recorded_dig_steady(struct dig_recorded_dig *recording, const struct dig_curve_set *set);
 
 /// Bucket pin and absolute direction pin -> tooth of a machine lambda times the rig's size, in the
 /// rig's scale and axes: x = -X, theta = -pi/2 - phi.

@@ -42,7 +42,7 @@ struct dig_window {
     double progress[DIG_WINDOW_MAX];
     double table_s[DIG_WINDOW_MAX]; // when the table's dig was there
     double value[DIG_WINDOW_MAX];   // of one channel after the other
-    double smooth[DIG_WINDOW_MAX];
+    double smooth[DIG_WINDOW_MAX + 1];
 };
 
 /// Adds a sample. Constant time.

@@ -237,6 +237,26 @@ TEST(a_machine_pitched_as_its_ground_digs_along_its_own_frame)
     dig_machine_recording_finish(&level);
 }
 
+// Angles in steps of half a degree, or in steps and with noise: the path that they make is blurred,
+// and lies as near another trajectory.
+TEST(steps_and_noise_of_the_angles_hide_no_dig)
+{
+    static const double      rough_deg[][2] = { { 0.0, 0.5 }, { 0.15, 0.0 }, { 0.15, 0.5 } };
+    const struct dig_machine as_filed       = machine;
+    for (size_t i = 0; i < sizeof rough_deg / sizeof rough_deg[0]; i++) {
+        machine.angle_sigma_rad            = rough_deg[i][0] * DIG_RAD_PER_DEG;
+        machine.angle_step_rad             = rough_deg[i][1] * DIG_RAD_PER_DEG;
+        struct dig_machine_recording r     = record();
+        struct dig_observed_digs     digs  = { .digs = 0 };
+        struct dig_error             error = { "" };
+        assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
+        expect_both(&digs);
+        dig_observed_digs_finish(&digs);
+        dig_machine_recording_finish(&r);
+        machine = as_filed;
+    }
+}
+
 // Nothing depends on a sample in the air before the dig.
 TEST(samples_without_forces_cost_the_moment_nothing)
 {

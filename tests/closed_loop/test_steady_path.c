@@ -15,10 +15,9 @@
 
 enum { ROWS_MAX = 4100 };
 
-static struct dig_force_row room[ROWS_MAX];
-static double               number[2 * ROWS_MAX + 1];
-static double               clean_way[ROWS_MAX];
-static double               way[ROWS_MAX];
+static double number[4 * ROWS_MAX + 1];
+static double clean_way[ROWS_MAX];
+static double way[ROWS_MAX];
 
 // Down, along, and out with a curl: corners that smoothing cuts.
 static const struct dig_trajectory dug = { "dug",
@@ -76,7 +75,7 @@ static double progress_off(const double rate_Hz, const double rest_s,
     struct dig_recording clean = drive(rate_Hz, rest_s, &exact, 0);
     struct dig_recording rough = drive(rate_Hz, rest_s, sensor, seed);
     if (mended) {
-        dig_steady_path(&rough, TOOTH_m, room, number);
+        dig_steady_path(&rough, TOOTH_m, number);
     }
     (void)dig_alignment_progress(&clean, TOOTH_m, clean_way);
     (void)dig_alignment_progress(&rough, TOOTH_m, way);
@@ -116,7 +115,7 @@ TEST(an_exact_path_stays_as_it_is)
         const double         rest_s = r % 2 == 0 ? 2.0 : 0.0;
         struct dig_recording was    = drive(rates_Hz[r], rest_s, &exact, 0);
         struct dig_recording is     = drive(rates_Hz[r], rest_s, &exact, 0);
-        dig_steady_path(&is, TOOTH_m, room, number);
+        dig_steady_path(&is, TOOTH_m, number);
         assert_memory_equal(is.row, was.row, was.rows * sizeof was.row[0]);
         dig_recording_finish(&was);
         dig_recording_finish(&is);
