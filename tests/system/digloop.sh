@@ -119,6 +119,9 @@ errors="$(error_of "$reference"__simpleA.csv) $(error_of "$work/heavy.csv" --mac
     $(error_of "$work/heavy.csv" --machine "$machine")"
 check "a model takes off a recording what it says of the machine" \
     awk -v e="$errors" 'BEGIN { exit !(split(e, x, " ") == 3 && (x[1] - x[2]) ^ 2 < 0.02 ^ 2 && x[3] > x[2] + 0.04) }'
+doubts() { "$BIN/digloop" identify "$table" "$work/heavy.csv" --machine "$machine" "$@" 2>"$work/err" | grep -q "perhaps it is the machine"; }
+check "outside the table it may be the machine" doubts
+check "not where a model says how that is" eval '! doubts --model "$work/model.json"'
 check "a model of another scene is refused" refuses "elsewhere.json" "scene_hash" -- \
     "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$machine" --model "$work/elsewhere.json"
 check "digs along two trajectories are not pooled" refuses "different trajectories" "--trajectory" -- \

@@ -182,6 +182,17 @@ static void show_identity(const struct dig_identity *const id, FILE *const to)
     }
 }
 
+// Friction of a cylinder that its file lacks pushes like no gravel either.
+static void show_doubt(const struct digloop_job *const job, const struct dig_match *const match,
+                       FILE *const to)
+{
+    if (match->outside && job->options->machine != NULL && job->options->model == NULL) {
+        (void)fputs("  perhaps it is the machine: digloop trace finds friction, weights and offsets "
+                    "that its file lacks\n",
+                    to);
+    }
+}
+
 static void show_family(const struct dig_match *const match, FILE *const to)
 {
     char untold[DIG_UNTOLD_SIZE];
@@ -236,6 +247,7 @@ enum dig_status digloop_identify(const struct digloop_job *const job, struct dig
             show_measured(job->set, &pool, match.forces, stdout);
             show_approaches(&pool, stdout);
             show_identity(&id, stdout);
+            show_doubt(job, &match, stdout);
             show_family(&match, stdout);
         }
     }
