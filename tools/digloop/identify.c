@@ -187,9 +187,10 @@ static void show_doubt(const struct digloop_job *const job, const struct dig_mat
                        FILE *const to)
 {
     if (match->outside && job->options->machine != NULL && job->options->model == NULL) {
-        (void)fputs("  perhaps it is the machine: digloop trace finds friction, weights and offsets "
-                    "that its file lacks\n",
-                    to);
+        (void)fputs(
+            "  perhaps it is the machine: digloop trace finds friction, weights and offsets "
+            "that its file lacks\n",
+            to);
     }
 }
 
