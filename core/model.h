@@ -7,6 +7,8 @@
 #include "core/curve.h"
 #include "core/effect.h"
 
+#include <stdbool.h>
+
 #define DIG_MODEL_EFFECTS_MAX    8
 #define DIG_MODEL_PARAMETERS_MAX 16
 #define DIG_MODEL_PATH_SIZE      512
@@ -27,28 +29,26 @@ struct dig_model_effect {
 /// What an effect that has no name adds, per trajectory of the table: a curve over path progress,
 /// as a factor of the rms of the table's own curve of that channel and trajectory.
 struct dig_model_unlisted {
+    bool  any;             // false: nothing
     char  depends_on[128]; // what it was found to depend on, for people
     float share[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
 struct dig_model {
-    char                       table[DIG_MODEL_PATH_SIZE];         // as the program may open it
-    char                       effects_table[DIG_MODEL_PATH_SIZE]; // "" when none is needed
-    char                       scene_hash[65];
-    struct dig_gravel          gravel, low, high; // refitted together with the effects
-    double                     noise_floor;
-    double                     error_before, error_after; // on the holdout digs
-    char                       provenance[256];           // campaign and version it came from
-    size_t                     effects;
-    struct dig_model_effect    effect[DIG_MODEL_EFFECTS_MAX];
-    struct dig_model_unlisted *unlisted; // NULL: none; malloc'ed, freed by dig_model_finish()
+    char                      table[DIG_MODEL_PATH_SIZE];         // as the program may open it
+    char                      effects_table[DIG_MODEL_PATH_SIZE]; // "" when none is needed
+    char                      scene_hash[65];
+    struct dig_gravel         gravel, low, high; // refitted together with the effects
+    double                    noise_floor;
+    double                    error_before, error_after; // on the holdout digs
+    char                      provenance[256];           // campaign and version it came from
+    size_t                    effects;
+    struct dig_model_effect   effect[DIG_MODEL_EFFECTS_MAX];
+    struct dig_model_unlisted unlisted;
 
     // Named by the trace, and not made part of the model: for people, nothing applies them.
     size_t                  not_applied;
     struct dig_model_effect left_out[DIG_MODEL_EFFECTS_MAX];
 };
-
-/// Frees what it holds and zeroes it. NULL and a zeroed struct are allowed.
-void dig_model_finish(struct dig_model *model);
 
 #endif // DIG_CORE_MODEL_H

@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct effect_text {
@@ -134,14 +133,10 @@ static int channel_of(const char *const name)
     return -1;
 }
 
-static struct dig_model_unlisted *take_unlisted(const struct unlisted_text *const text,
-                                                struct dig_conditions *const      c)
+static void take_unlisted(const struct unlisted_text *const text,
+                          struct dig_model_unlisted *const made, struct dig_conditions *const c)
 {
-    struct dig_model_unlisted *const made = calloc(1, sizeof *made);
-    if (made == NULL) {
-        c->status = dig_error_set(c->error, DIG_ENOMEM, "out of memory");
-        return NULL;
-    }
+    made->any = true;
     memcpy(made->depends_on, text->depends_on, sizeof made->depends_on);
     for (size_t i = 0; i < text->curves && c->status == DIG_OK; i++) {
         const struct curve_text *const from    = &text->curve[i];
@@ -158,36 +153,33 @@ static struct dig_model_unlisted *take_unlisted(const struct unlisted_text *cons
             made->share[from->trajectory][channel][k] = (float)from->share[k];
         }
     }
-    return made;
 }
 
 static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
-    const struct model_text *const text = loaded;
-    struct dig_model               m    = text->model;
+    struct model_text *const text = loaded;
+    struct dig_model *const  m    = &text->model;
     (void)path;
     dig_require(c, text->version == 1, "version: %u, expected 1", text->version);
-    m.noise_floor  = number_of(text->noise_floor);
-    m.error_before = number_of(text->error_before);
-    m.error_after  = number_of(text->error_after);
+    m->noise_floor  = number_of(text->noise_floor);
+    m->error_before = number_of(text->error_before);
+    m->error_after  = number_of(text->error_after);
     for (int a = 0; a < DIG_AXES; a++) {
-        dig_require(c, isfinite(m.gravel.value[a]) && m.gravel.value[a] >= 0.0,
+        dig_require(c, isfinite(m->gravel.value[a]) && m->gravel.value[a] >= 0.0,
                     "gravel: is no gravel, expected numbers >= 0");
     }
-    for (size_t e = 0; e < m.effects; e++) {
-        take_effect(&text->effect[e], &m.effect[e], c);
+    for (size_t e = 0; e < m->effects; e++) {
+        take_effect(&text->effect[e], &m->effect[e], c);
     }
-    for (size_t e = 0; e < m.not_applied; e++) {
-        take_effect(&text->left_out[e], &m.left_out[e], c);
+    for (size_t e = 0; e < m->not_applied; e++) {
+        take_effect(&text->left_out[e], &m->left_out[e], c);
     }
-    if (c->status == DIG_OK && text->unlisted != NULL) {
-        m.unlisted = take_unlisted(text->unlisted, c);
+    if (text->unlisted != NULL) {
+        take_unlisted(text->unlisted, &m->unlisted, c);
     }
     if (c->status == DIG_OK) {
-        *(struct dig_model *)into = m;
-    } else {
-        free(m.unlisted);
+        *(struct dig_model *)into = *m;
     }
 }
 

@@ -14,7 +14,7 @@ DIG_MUST_CHECK enum dig_status dig_model_save(const char *path, const struct dig
 
 /// DIG_EINVAL names file, line, key and what was expected; DIG_EIO: it cannot be opened. Whether an
 /// effect has the parameters named is the estimator's to say (dig_effect_values()). Writes on
-/// success only; free with dig_model_finish().
+/// success only.
 DIG_MUST_CHECK enum dig_status dig_model_read(const char *path, struct dig_model *model,
                                               struct dig_error *error);
 

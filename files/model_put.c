@@ -116,8 +116,8 @@ static void write_model(FILE *const to, const struct dig_model *const model)
         (void)fputs(",\n ", to);
         put_effects(to, "not_applied", model->not_applied, model->left_out);
     }
-    if (model->unlisted != NULL) {
-        put_unlisted(to, model->unlisted);
+    if (model->unlisted.any) {
+        put_unlisted(to, &model->unlisted);
     }
     (void)fputs("}\n", to);
 }

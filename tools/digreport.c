@@ -300,7 +300,6 @@ int main(const int argc, char *argv[])
         status = options.shift ? report_shift(&options, &had, &error)
                                : report_runs(&options, &had, &error);
     }
-    dig_model_finish(&had.model);
     dig_curve_set_destroy(had.set);
     if (status != DIG_OK) {
         (void)fprintf(stderr, "digreport: %s\n", error.text);

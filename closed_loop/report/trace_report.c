@@ -71,8 +71,8 @@ static void put_effects(FILE *const to, const struct dig_trace *const trace)
         dig_json_put(to, "{\"name\": %s, \"probability\": %g, \"seen_in\": %s",
                      dig_effect_name(effect->effect), effect->probability,
                      dig_part_name(trace->seen_in[e]));
-        if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted != NULL) {
-            dig_json_put(to, ", \"depends_on\": %s", trace->unlisted->depends_on);
+        if (effect->effect == DIG_EFFECT_UNLISTED && trace->unlisted.any) {
+            dig_json_put(to, ", \"depends_on\": %s", trace->unlisted.depends_on);
         }
         char text[256];
         dig_trace_meaning(trace, e, sizeof text, text);
@@ -192,8 +192,8 @@ static void put_found(const struct dig_trace *const trace, const size_t e, const
     const bool unlisted = effect->effect == DIG_EFFECT_UNLISTED;
     dig_text_add(size, text, "%s",
                  unlisted ? "an effect that has no name here" : dig_effect_name(effect->effect));
-    if (unlisted && trace->unlisted != NULL && trace->unlisted->depends_on[0] != '\0') {
-        dig_text_add(size, text, ", which depends on %s", trace->unlisted->depends_on);
+    if (unlisted && trace->unlisted.any && trace->unlisted.depends_on[0] != '\0') {
+        dig_text_add(size, text, ", which depends on %s", trace->unlisted.depends_on);
     }
     dig_text_add(size, text, " (probability %.2f, seen in %s)", effect->probability,
                  trace->seen_in[e] == DIG_PART_LIFTED ? "lifting out"

@@ -28,7 +28,6 @@ struct dig_trace_settings dig_trace_settings_default(void)
 void dig_trace_finish(struct dig_trace *const trace)
 {
     if (trace != NULL) {
-        free(trace->unlisted);
         free(trace->judged.curves);
         free(trace->residuals);
         memset(trace, 0, sizeof *trace);
@@ -154,17 +153,14 @@ static enum dig_status report(const struct dig_trace_work *const w, struct dig_t
         return DIG_ENOMEM;
     }
     fill_decision(w, trace);
-    enum dig_status status = dig_trace_fill_verdict(w, trace);
-    if (status != DIG_OK) {
-        return status;
-    }
+    dig_trace_fill_verdict(w, trace);
     trace->significant = trace->significant || trace->effects > 0;
     dig_trace_fill_candidates(w, trace);
-    dig_trace_fill_curves(w, trace->unlisted, trace->judged.curves);
+    dig_trace_fill_curves(w, &trace->unlisted, trace->judged.curves);
     drop_what_is_not_worth_it(w, trace);
     fill_errors(w, trace);
     dig_residuals_make(w, trace->judged.curves, trace->residuals);
-    status = dig_tell_apart(w, trace);
+    const enum dig_status status = dig_tell_apart(w, trace);
     return status == DIG_OK ? dig_trace_explain(w, trace, error) : status;
 }
 

@@ -51,10 +51,10 @@ struct dig_trace {
     // worth making; then after is before, and a model of it is the gravel refitted alone.
     bool applied;
 
-    size_t                     effects; // of the verdict; 0: none
-    struct dig_model_effect    effect[DIG_MODEL_EFFECTS_MAX];
-    enum dig_part              seen_in[DIG_MODEL_EFFECTS_MAX];
-    struct dig_model_unlisted *unlisted; // when one of the effects is; malloc'ed
+    size_t                    effects; // of the verdict; 0: none
+    struct dig_model_effect   effect[DIG_MODEL_EFFECTS_MAX];
+    enum dig_part             seen_in[DIG_MODEL_EFFECTS_MAX];
+    struct dig_model_unlisted unlisted; // when one of the effects is
 
     size_t                   candidates;
     struct dig_candidate     candidate[DIG_TRACE_CANDIDATES_MAX]; // best first

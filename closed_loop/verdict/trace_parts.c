@@ -179,7 +179,7 @@ void dig_trace_fill_curves(const struct dig_trace_work *const     w,
         double                           plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         predict(w, &w->before, dig, &of->before);
         predict(w, chosen, dig, &of->after);
-        if (unlisted != NULL) {
+        if (unlisted->any) {
             add_unlisted(unlisted, trajectory, of->after.value);
         }
         dig_response_surface_curve(w->surface, trajectory, chosen->number, plain);

@@ -6,7 +6,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static void fill_sets(const struct dig_search *const s, const struct dig_machine_finding *const air,
                       struct dig_trace *const trace)
@@ -67,8 +66,7 @@ void dig_trace_confirm_without_air(struct dig_trace_work *const w)
 }
 
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): one step after another
-enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *const w,
-                                       struct dig_trace *const            trace)
+void dig_trace_fill_verdict(const struct dig_trace_work *const w, struct dig_trace *const trace)
 {
     assert(w != NULL && trace != NULL);
     const struct dig_machine_finding *const air = w->air;
@@ -87,14 +85,11 @@ enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *const w,
     }
     const bool of_soil = s->significant && s->unlisted;
     if ((of_soil || air->unexplained) && trace->effects < DIG_MODEL_EFFECTS_MAX) {
-        trace->unlisted = calloc(1, sizeof *trace->unlisted);
-        if (trace->unlisted == NULL) {
-            return DIG_ENOMEM;
-        }
+        trace->unlisted.any = true;
         if (of_soil) {
-            dig_unlisted_correct(w->batch, &s->chosen, trace->unlisted);
+            dig_unlisted_correct(w->batch, &s->chosen, &trace->unlisted);
         }
-        (void)snprintf(trace->unlisted->depends_on, sizeof trace->unlisted->depends_on, "%s",
+        (void)snprintf(trace->unlisted.depends_on, sizeof trace->unlisted.depends_on, "%s",
                        s->is_rock             ? "where the rock lies"
                        : of_soil              ? s->without_name.depends_on
                        : air->follows != NULL ? air->follows
@@ -110,5 +105,4 @@ enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *const w,
         };
         trace->effect[trace->effects++] = s->is_rock ? dig_trace_rock(&s->rock, in_soil) : unnamed;
     }
-    return DIG_OK;
 }

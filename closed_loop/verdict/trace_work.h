@@ -107,9 +107,7 @@ void dig_trace_doubt_soil(struct dig_trace_work *w);
 /// what is added to the prediction for an effect without a name: nothing where free air shows a
 /// machine that no effect explains, because it may do otherwise to the next dig. Probabilities
 /// without free air are even at most. trace->residual says where what has no name is seen.
-/// DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_trace_fill_verdict(const struct dig_trace_work *w,
-                                                      struct dig_trace            *trace);
+void dig_trace_fill_verdict(const struct dig_trace_work *w, struct dig_trace *trace);
 
 /// Numbers of a fitted effect as a model file and a report have them.
 struct dig_model_effect dig_trace_effect(const struct dig_soil   *soil,
@@ -123,7 +121,7 @@ struct dig_model_effect dig_trace_rock(const struct dig_rock *rock, double proba
 enum dig_part dig_trace_seen_in(const struct dig_trace_work *w, const struct dig_fitted *fitted,
                                 size_t effect);
 
-/// Curves before and after of all digs, zeroed; unlisted (NULL: none) is added after.
+/// Curves before and after of all digs, zeroed; unlisted is added after.
 void dig_trace_fill_curves(const struct dig_trace_work     *w,
                            const struct dig_model_unlisted *unlisted,
                            struct dig_trace_curves          curves[]);

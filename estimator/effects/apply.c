@@ -82,8 +82,8 @@ static enum dig_status apply(const struct dig_curve_set *const plain,
         }
         add(&added, &curve);
     }
-    if (model->unlisted != NULL) {
-        add_unlisted(model->unlisted, trajectory, before, &curve);
+    if (model->unlisted.any) {
+        add_unlisted(&model->unlisted, trajectory, before, &curve);
     }
     *out = curve;
     return DIG_OK;

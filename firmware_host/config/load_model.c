@@ -25,7 +25,7 @@ static void find_beside(const char *const beside, const char *const name, const 
 
 static bool needs_curves(const struct dig_model *const model)
 {
-    bool needs = model->unlisted != NULL;
+    bool needs = model->unlisted.any;
     for (size_t e = 0; e < model->effects; e++) {
         needs = needs || !dig_effect_is_of_machine(model->effect[e].effect);
     }
@@ -136,6 +136,5 @@ enum dig_status dig_load_model(const char *const model_path, const char *const t
     if (status == DIG_OK) {
         *corrected = made;
     }
-    dig_model_finish(&model);
     return status;
 }

@@ -177,7 +177,7 @@ TEST(without_an_effect_before_and_after_are_the_same)
     assert_memory_equal(&trace.gravel_before, &trace.gravel, sizeof trace.gravel);
     assert_memory_equal(&trace.low_before, &trace.low, sizeof trace.low);
     assert_memory_equal(&trace.high_before, &trace.high, sizeof trace.high);
-    assert_null(trace.unlisted);
+    assert_false(trace.unlisted.any);
 }
 
 // It is no effect, and the prediction is made with it all the same.
@@ -198,8 +198,8 @@ TEST(what_has_no_name_is_corrected_all_the_same)
     trace_campaign();
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
-    assert_non_null(trace.unlisted);
-    assert_true(trace.unlisted->depends_on[0] != '\0');
+    assert_true(trace.unlisted.any);
+    assert_true(trace.unlisted.depends_on[0] != '\0');
     assert_true(trace.effect[0].probability > 0.95);
     assert_true(trace.after.value < 0.7 * trace.before.value);
 }

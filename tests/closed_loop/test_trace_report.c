@@ -15,13 +15,12 @@
 enum { DIGS = 3 };
 
 struct example {
-    struct dig_trace          trace;
-    struct dig_trace_curves   curves[DIGS];
-    struct dig_measured       measured[DIGS];
-    struct dig_model_unlisted unlisted;
-    struct dig_residuals      residuals;
-    struct dig_curve_set     *set;
-    struct dig_trace_subject  subject;
+    struct dig_trace         trace;
+    struct dig_trace_curves  curves[DIGS];
+    struct dig_measured      measured[DIGS];
+    struct dig_residuals     residuals;
+    struct dig_curve_set    *set;
+    struct dig_trace_subject subject;
 };
 
 static void fill_digs(struct example *const e)
@@ -102,7 +101,7 @@ static struct example *make(void)
                              .parameter   = { { "coulomb_N", 812.0, 760.0, 861.0 } } },
                            { .effect = DIG_EFFECT_UNLISTED, .probability = 0.75 } },
         .seen_in       = { DIG_PART_AIR, DIG_PART_SOIL },
-        .unlisted      = &e->unlisted,
+        .unlisted      = { .any = true, .depends_on = "speed and depth" },
         .candidates    = 2,
         .candidate     = { { .as           = { .effect      = DIG_EFFECT_CYLINDER_FRICTION,
                                                .probability = 0.97,
@@ -141,7 +140,6 @@ static struct example *make(void)
         .residuals     = &e->residuals,
         .advice        = "dig \"simpleB\" & see <again>",
     };
-    (void)snprintf(e->unlisted.depends_on, sizeof e->unlisted.depends_on, "speed and depth");
     const struct made_options options = { .relative_sd = 0.1, .packings = 3 };
     e->set                            = made_table(&options);
     e->trace.judged                   = (struct dig_judged){ e->set, DIGS, e->measured, e->curves };

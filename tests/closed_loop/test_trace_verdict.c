@@ -3,7 +3,6 @@
 #include "estimator/effects/effect.h"
 #include "tests/closed_loop/world_fixture.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { DIGS = 6, DRAWS = 24 };
@@ -35,12 +34,11 @@ static struct dig_trace_work search(const enum dig_effect_id effect, const doubl
                                     .air      = &shown };
 }
 
-static enum dig_status fill_verdict(const struct dig_trace_work *const      t,
-                                    const struct dig_machine_finding *const air,
-                                    struct dig_trace *const                 trace)
+static void fill_verdict(const struct dig_trace_work *const      t,
+                         const struct dig_machine_finding *const air, struct dig_trace *const trace)
 {
     shown = *air;
-    return dig_trace_fill_verdict(t, trace);
+    dig_trace_fill_verdict(t, trace);
 }
 
 static double largest_correction(const struct dig_model_unlisted *const u)
@@ -63,18 +61,16 @@ TEST(what_has_no_name_is_corrected_whatever_free_air_shows)
     struct dig_machine_finding  air        = { .p_complete = 1.0 };
     struct dig_trace            understood = { 0 };
     struct dig_trace            strange    = { 0 };
-    assert_int_equal(fill_verdict(&t, &air, &understood), DIG_OK);
+    fill_verdict(&t, &air, &understood);
     air = (struct dig_machine_finding){ .significant = true, .unexplained = true };
-    assert_int_equal(fill_verdict(&t, &air, &strange), DIG_OK);
+    fill_verdict(&t, &air, &strange);
 
     assert_int_equal(understood.effects, 1);
     assert_int_equal(understood.effect[0].effect, DIG_EFFECT_UNLISTED);
-    assert_true(largest_correction(understood.unlisted) > 0.2);
+    assert_true(largest_correction(&understood.unlisted) > 0.2);
     assert_int_equal(strange.effects, 1);
     assert_int_equal(strange.effect[0].effect, DIG_EFFECT_UNLISTED);
-    assert_memory_equal(strange.unlisted, understood.unlisted, sizeof *strange.unlisted);
-    free(understood.unlisted);
-    free(strange.unlisted);
+    assert_memory_equal(&strange.unlisted, &understood.unlisted, sizeof strange.unlisted);
 }
 
 TEST(what_free_air_alone_shows_is_seen_in_the_air)
@@ -85,14 +81,13 @@ TEST(what_free_air_alone_shows_is_seen_in_the_air)
                                                .p_complete  = 1e-5 };
     struct dig_trace                 trace = { 0 };
     assert_false(found.significant);
-    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
+    fill_verdict(&t, &air, &trace);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_int_equal(trace.seen_in[0], DIG_PART_AIR);
     assert_close(trace.effect[0].probability, 1.0 - 1e-5, 1e-12);
-    assert_non_null(strstr(trace.unlisted->depends_on, "free air"));
-    assert_close(largest_correction(trace.unlisted), 0.0, 0.0); // the digs show nothing
-    free(trace.unlisted);
+    assert_non_null(strstr(trace.unlisted.depends_on, "free air"));
+    assert_close(largest_correction(&trace.unlisted), 0.0, 0.0); // the digs show nothing
 }
 
 // What the digs do not confirm is claimed as far as they do, wherever it is seen.
@@ -106,18 +101,16 @@ TEST(what_has_no_name_is_weighed)
     struct dig_trace                 trace   = { 0 };
     assert_close(found.unnamed, 1.0, 0.0);
     found.unnamed = 0.6;
-    assert_int_equal(fill_verdict(&t, &told, &trace), DIG_OK);
+    fill_verdict(&t, &told, &trace);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_close(trace.effect[0].probability, 0.6 * (1.0 - found.p_complete), 1e-12);
-    free(trace.unlisted);
 
     t             = search(DIG_EFFECT_LAYERING, 0.0);
     trace         = (struct dig_trace){ 0 };
     found.unnamed = 0.6;
-    assert_int_equal(fill_verdict(&t, &strange, &trace), DIG_OK);
+    fill_verdict(&t, &strange, &trace);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_close(trace.effect[0].probability, 0.6 * (1.0 - 1e-5), 1e-12);
-    free(trace.unlisted);
 }
 
 // Without free air what has a name may be the machine's as well as what has none.
@@ -128,18 +121,17 @@ TEST(without_free_air_no_more_than_even_odds_are_claimed)
     struct dig_trace_work            t     = search(DIG_EFFECT_LAYERING, 0.8);
     struct dig_trace                 with  = { 0 };
     struct dig_trace                 trace = { 0 };
-    assert_int_equal(fill_verdict(&t, &told, &with), DIG_OK);
-    assert_int_equal(fill_verdict(&t, &none, &trace), DIG_OK);
+    fill_verdict(&t, &told, &with);
+    fill_verdict(&t, &none, &trace);
     assert_true(with.effect[0].probability > 0.9);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LAYERING);
     assert_close(trace.effect[0].probability, 0.5, 0.0);
 
     t     = search(DIG_EFFECT_UNLISTED, 1.2);
     trace = (struct dig_trace){ 0 };
-    assert_int_equal(fill_verdict(&t, &none, &trace), DIG_OK);
+    fill_verdict(&t, &none, &trace);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_close(trace.effect[0].probability, 0.5, 0.0);
-    free(trace.unlisted);
 }
 
 TEST(what_has_no_name_is_seen_where_the_residual_is_largest)
@@ -155,9 +147,8 @@ TEST(what_has_no_name_is_seen_where_the_residual_is_largest)
                   { 2.0, gap, DIG_PART_SOIL } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct dig_trace trace = { .residual = { gap, cases[i].soil, cases[i].lifted } };
-        assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
+        fill_verdict(&t, &air, &trace);
         assert_int_equal(trace.seen_in[0], cases[i].seen_in);
-        free(trace.unlisted);
     }
 }
 
@@ -172,7 +163,7 @@ TEST(both_sides_are_named_the_machine_first)
         .set         = { { 2, { DIG_EFFECT_BUCKET_WEIGHT, DIG_EFFECT_PAYLOAD } } },
     };
     struct dig_trace trace = { 0 };
-    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
+    fill_verdict(&t, &air, &trace);
     assert_int_equal(trace.effects, 2);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_BUCKET_WEIGHT);
     assert_int_equal(trace.seen_in[0], DIG_PART_AIR);
@@ -180,7 +171,7 @@ TEST(both_sides_are_named_the_machine_first)
     assert_int_equal(trace.seen_in[1], DIG_PART_SOIL);
     assert_int_equal(trace.sets, found.alike.effects > 0 ? 2 : 1);
     assert_int_equal(trace.set[0].effect[1], DIG_EFFECT_PAYLOAD);
-    assert_null(trace.unlisted);
+    assert_false(trace.unlisted.any);
 }
 
 // What free air shows with the digs' help only is not seen in it.
@@ -194,7 +185,7 @@ TEST(a_machine_that_the_digs_show_is_seen_in_the_soil)
         .by_digs     = true,
     };
     struct dig_trace trace = { 0 };
-    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
+    fill_verdict(&t, &air, &trace);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_LINKAGE_GEOMETRY);
     assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
@@ -211,12 +202,11 @@ TEST(a_strange_machine_leaves_the_soil_without_a_name)
     assert_false(found.unlisted);
     shown = air;
     dig_trace_doubt_soil(&t);
-    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
+    fill_verdict(&t, &air, &trace);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_UNLISTED);
     assert_int_equal(trace.sets, 0);
-    assert_close(largest_correction(trace.unlisted), 0.0, 0.0);
-    free(trace.unlisted);
+    assert_close(largest_correction(&trace.unlisted), 0.0, 0.0);
 }
 
 // Named, and corrected by what was measured: its model says where, and adds no template.
@@ -227,11 +217,11 @@ TEST(a_rock_elsewhere_is_an_obstacle_without_a_template)
     struct dig_trace                 trace = { 0 };
     found.is_rock                          = true;
     found.rock = (struct dig_rock){ .ahead_m = 0.03, .low_m = 0.02, .high_m = 0.05 };
-    assert_int_equal(fill_verdict(&t, &air, &trace), DIG_OK);
+    fill_verdict(&t, &air, &trace);
     assert_int_equal(trace.effects, 1);
     assert_int_equal(trace.effect[0].effect, DIG_EFFECT_OBSTACLE);
     assert_int_equal(trace.seen_in[0], DIG_PART_SOIL);
-    assert_true(largest_correction(trace.unlisted) > 0.2);
+    assert_true(largest_correction(&trace.unlisted) > 0.2);
     double value[DIG_MODEL_PARAMETERS_MAX];
     assert_int_equal(dig_effect_values(&trace.effect[0], value), DIG_OK);
     assert_close(value[0], 0.0, 0.0);
@@ -240,7 +230,6 @@ TEST(a_rock_elsewhere_is_an_obstacle_without_a_template)
     assert_int_equal(trace.candidates, 1 + found.rivals);
     assert_int_equal(trace.candidate[0].as.effect, DIG_EFFECT_OBSTACLE);
     assert_string_equal(trace.candidate[0].as.parameter[0].name, "ahead_m");
-    free(trace.unlisted);
 }
 
 TESTS_WITH(world_setup, world_teardown)

@@ -247,9 +247,9 @@ TEST(a_model_changes_the_tables_curves)
                          { .effect     = DIG_EFFECT_WEAR,
                            .parameters = 2,
                            .parameter = { { "share_per_dig", 0.1, 0, 0 }, { "digs", 3.0, 0, 0 } } } },
-           .unlisted = calloc(1, sizeof *model.unlisted)
+           .unlisted = { .any = true }
     };
-    model.unlisted->share[MADE_ACTUAL][DIG_CHANNEL_MY_Nm][128] = 0.5F;
+    model.unlisted.share[MADE_ACTUAL][DIG_CHANNEL_MY_Nm][128] = 0.5F;
     // Cohesion has beds along simpleA alone: elsewhere it is not known, and nowhere without a set.
     assert_int_equal(dig_effects_apply(w->plain, &w->effects, &model, w->out), DIG_OK);
     assert_int_equal(w->out->packings[MADE_SIMPLE_A], 5);
@@ -283,7 +283,6 @@ TEST(a_model_changes_the_tables_curves)
             (double)w->out->curve[b].mean[0][128] - 1.3 * (double)w->plain->curve[b].mean[0][128];
         assert_close(extra, 0.5 * sqrt(sum), 1e-4 * sqrt(sum));
     }
-    dig_model_finish(&model);
     free_world(w);
 }
 

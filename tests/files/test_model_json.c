@@ -4,8 +4,6 @@
 
 #include "tests/scratch.h"
 
-#include <stdlib.h>
-
 static const char *const example_path = "tests/data/formats/model.json";
 
 static struct dig_model example(void)
@@ -30,7 +28,7 @@ static struct dig_model example(void)
                              .probability = 0.7,
                              .parameters  = 1,
                              .parameter   = { { "cohesion_Jpm3", 5e4, 4e4, 6e4 } } } },
-        .unlisted      = calloc(1, sizeof *m.unlisted),
+        .unlisted      = { .any = true, .depends_on = "depth" },
         .not_applied   = 1,
         .left_out      = { { .effect      = DIG_EFFECT_BUCKET_WEIGHT,
                              .probability = 0.5,
@@ -38,10 +36,8 @@ static struct dig_model example(void)
                              .parameter   = { { "mass_kg", 104.0, 96.0, 112.0 } } } },
     };
     memset(m.scene_hash, 'b', 64);
-    assert_non_null(m.unlisted);
-    (void)snprintf(m.unlisted->depends_on, sizeof m.unlisted->depends_on, "depth");
     for (int k = 0; k < DIG_CURVE_POINTS; k++) {
-        m.unlisted->share[1][DIG_CHANNEL_FX_N][k] = 0.001F * (float)k;
+        m.unlisted.share[1][DIG_CHANNEL_FX_N][k] = 0.001F * (float)k;
     }
     return m;
 }
@@ -75,12 +71,10 @@ TEST(what_was_written_is_read_back)
     assert_int_equal(back.not_applied, 1);
     assert_int_equal(back.left_out[0].effect, DIG_EFFECT_BUCKET_WEIGHT);
     assert_close(back.left_out[0].parameter[0].high, 112.0, 1e-9);
-    assert_non_null(back.unlisted);
-    assert_string_equal(back.unlisted->depends_on, "depth");
-    assert_close((double)back.unlisted->share[1][DIG_CHANNEL_FX_N][200], 0.2, 1e-6);
-    assert_close((double)back.unlisted->share[0][DIG_CHANNEL_MY_Nm][200], 0.0, 0.0);
-    dig_model_finish(&back);
-    dig_model_finish(&m);
+    assert_true(back.unlisted.any);
+    assert_string_equal(back.unlisted.depends_on, "depth");
+    assert_close((double)back.unlisted.share[1][DIG_CHANNEL_FX_N][200], 0.2, 1e-6);
+    assert_close((double)back.unlisted.share[0][DIG_CHANNEL_MY_Nm][200], 0.0, 0.0);
 }
 
 TEST(the_example_of_the_docs_is_read)
@@ -89,8 +83,7 @@ TEST(the_example_of_the_docs_is_read)
     struct dig_error error = { "" };
     assert_ok(dig_model_read(example_path, &model, &error), error);
     assert_int_equal(model.effects, 1);
-    assert_null(model.unlisted);
-    dig_model_finish(&model);
+    assert_false(model.unlisted.any);
 }
 
 // The example with one text replaced.

@@ -9,6 +9,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *const data, const size_t size)
     struct dig_model      read   = { 0 };
     const enum dig_status status = dig_model_read(as_file(data, size), &read, &error);
     expect_word(status, &error);
-    dig_model_finish(&read);
     return 0;
 }

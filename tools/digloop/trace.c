@@ -107,7 +107,9 @@ static enum dig_status save_model(const struct digloop_job *const job, const cha
         *to                               = trace->effect[e];
         count_digs(trace->judged.digs, to);
     }
-    model->unlisted              = trace->applied ? trace->unlisted : NULL; // the trace keeps it
+    if (trace->applied) {
+        model->unlisted = trace->unlisted;
+    }
     const enum dig_status status = dig_model_save(job->options->add, model, error);
     free(model);
     return status;

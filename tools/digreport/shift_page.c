@@ -14,7 +14,7 @@ static void put_effects(const struct dig_model *const model, FILE *const to)
         (void)fputs("<p>No model file was given (<code>--model</code>).</p>\n", to);
         return;
     }
-    if (model->effects == 0 && model->unlisted == NULL) {
+    if (model->effects == 0 && !model->unlisted.any) {
         (void)fputs("<p>The model has no effect.</p>\n", to);
         return;
     }
@@ -29,9 +29,9 @@ static void put_effects(const struct dig_model *const model, FILE *const to)
                          dig_effect_name(effect->effect), q->name, q->value, q->low, q->high);
         }
     }
-    if (model->unlisted != NULL) {
+    if (model->unlisted.any) {
         dig_html_put(to, "<tr><th>unlisted</th><td>depends on %s</td><td></td><td></td></tr>\n",
-                     model->unlisted->depends_on);
+                     model->unlisted.depends_on);
     }
     (void)fputs("</table>\n", to);
 }
