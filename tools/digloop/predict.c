@@ -1,3 +1,5 @@
+#include "closed_loop/accuracy/coverage.h"
+#include "closed_loop/accuracy/score.h"
 #include "core/markup.h"
 #include "core/units.h"
 #include "estimator/approach/interpolate.h"
@@ -7,7 +9,6 @@
 #include "files/recording_csv.h"
 #include "tools/digloop/as_dug.h"
 #include "tools/digloop/commands.h"
-#include "tools/digloop/prediction_error.h"
 #include "tools/digloop/recording.h"
 
 #include <assert.h>
@@ -61,12 +62,116 @@ static void put_array(const char *const name, const float curve[DIG_CURVE_POINTS
     (void)fputs("]", stdout);
 }
 
+#define ERRORS_MAX 64 // peaks and energies listed one by one
+
+// Error of a prediction against the digs measured along its trajectory. Zeroed: of no dig. Peaks
+// and energies are those measured; NaN without forces.
+struct errors {
+    struct dig_score    score;
+    struct dig_coverage coverage;
+    size_t              digs;
+    double              peak_Nm[ERRORS_MAX], energy_J[ERRORS_MAX];
+};
+
+// Peak and energy of a measured dig. The energy needs the forces.
+static void add_peak_energy(const struct dig_trajectory *const t, const double tooth_m,
+                            const struct dig_observation *const dig, struct errors *const errors)
+{
+    struct dig_channels weight;
+    dig_peak_energy_weights(t, tooth_m, &weight);
+    double peak_Nm  = -INFINITY;
+    double energy_J = dig->forces ? 0.0 : (double)NAN;
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        const double at = (double)k / (DIG_CURVE_POINTS - 1);
+        if (at >= dig->first && at <= dig->last) {
+            peak_Nm = fmax(peak_Nm, dig->moment_Nm[k]);
+            energy_J += weight.of[0][k] * dig->moment_Nm[k] + weight.of[1][k] * dig->force_N[0][k] +
+                        weight.of[2][k] * dig->force_N[1][k];
+        }
+    }
+    if (errors->digs < ERRORS_MAX) {
+        errors->peak_Nm[errors->digs]  = peak_Nm;
+        errors->energy_J[errors->digs] = energy_J;
+        errors->digs++;
+    }
+}
+
+// Error of the prediction of one dig at its own approach.
+static enum dig_status score_dig(const struct dig_curve_set *const   set,
+                                 const struct dig_match *const       match,
+                                 const struct dig_observation *const dig,
+                                 struct errors *const errors, struct dig_error *const error)
+{
+    struct digloop_as_dug table = { .set = NULL };
+    struct dig_curve      curve;
+    size_t                at = 0;
+    enum dig_status       status =
+        digloop_as_dug_at(set, (size_t)dig->trajectory, &dig->approach, &table, &at, error);
+    if (status != DIG_OK) {
+        return status;
+    }
+    status = dig_predict_curve(table.set, match, at, &curve);
+    if (status == DIG_OK) {
+        const struct dig_trajectory *const t = &table.set->trajectory[at];
+        double                             predicted_Nm[DIG_CURVE_POINTS];
+        double                             sigma_Nm[DIG_CURVE_POINTS];
+        for (int k = 0; k < DIG_CURVE_POINTS; k++) {
+            predicted_Nm[k] = (double)curve.mean[DIG_CHANNEL_MY_Nm][k];
+            sigma_Nm[k]     = (double)curve.sd[DIG_CHANNEL_MY_Nm][k];
+        }
+        dig_score_add(&errors->score, t, set->tooth_m, dig->first, dig->last, dig->moment_Nm,
+                      predicted_Nm, sigma_Nm);
+        dig_coverage_add(&errors->coverage, dig, &curve);
+        add_peak_energy(t, set->tooth_m, dig, errors);
+    } else {
+        (void)dig_error_set(error, status, "%s", dig_status_str(status));
+    }
+    digloop_as_dug_finish(&table);
+    return status;
+}
+
+// Of all digs of --measured along trajectory t, each predicted as it was made.
+static enum dig_status measure(const struct digloop_job *const job, const int t,
+                               const struct dig_match *const match, struct errors *const errors,
+                               struct dig_error *const error)
+{
+    struct dig_observed_digs seen = { .digs = 0 };
+    enum dig_status status        = digloop_read_digs(job, job->options->measured, t, &seen, error);
+    for (size_t i = 0; status == DIG_OK && i < seen.digs; i++) {
+        status = score_dig(job->set, match, &seen.dig[i], errors, error);
+    }
+    dig_observed_digs_finish(&seen);
+    return status;
+}
+
+static void put_list(const char *const name, const size_t n, const double value[])
+{
+    dig_json_put(stdout, ", %s: [", name);
+    for (size_t i = 0; i < n; i++) {
+        dig_json_put(stdout, i == 0 ? "%g" : ", %g", value[i]);
+    }
+    (void)fputs("]", stdout);
+}
+
+static void put_errors(const struct errors *const errors)
+{
+    dig_json_put(stdout, ", \"error\": %g, \"noise_floor\": %g", dig_score_error(&errors->score),
+                 dig_score_noise_floor(&errors->score));
+    double inside[DIG_FORCE_CHANNELS];
+    for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+        inside[c] = dig_coverage_share(&errors->coverage, (enum dig_channel)c);
+    }
+    put_list("inside_90", DIG_FORCE_CHANNELS, inside);
+    put_list("measured_peak_Nm", errors->digs, errors->peak_Nm);
+    put_list("measured_energy_J", errors->digs, errors->energy_J);
+}
+
 // A prediction, and its error against measured digs.
 struct prediction {
-    struct dig_trajectory           trajectory; // as dug
-    struct dig_curve                curve;
-    struct dig_peak_energy          whole;
-    struct digloop_prediction_error errors;
+    struct dig_trajectory  trajectory; // as dug
+    struct dig_curve       curve;
+    struct dig_peak_energy whole;
+    struct errors          errors;
 };
 
 // The same dig by a machine: Froude similarity.
@@ -137,7 +242,7 @@ static void print(const struct digloop_options *const options, const struct pred
                      options->approach.attack_rad / DIG_RAD_PER_DEG);
     }
     if (options->measured != NULL) {
-        digloop_prediction_error_put(&p->errors);
+        put_errors(&p->errors);
     }
     if (machine != NULL) {
         const struct dig_peak_energy m = on_machine(&p->whole, machine->lambda);
@@ -209,7 +314,7 @@ enum dig_status digloop_predict(const struct digloop_job *const job, struct dig_
     struct prediction p = { .errors = { .digs = 0 } };
     status              = predict(job, t, &id.match, &p, error);
     if (status == DIG_OK && options->measured != NULL) {
-        status = digloop_prediction_error_measure(job, t, &id.match, &p.errors, error);
+        status = measure(job, t, &id.match, &p.errors, error);
     }
     if (status == DIG_OK && options->out != NULL) {
         status = write_curve(options->out, job->set, &p.trajectory, &p.curve, error);
