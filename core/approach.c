@@ -70,18 +70,16 @@ static enum dig_status check_range(const struct dig_approach *const   approach,
                                    const struct dig_trajectory *const trajectory,
                                    struct dig_error *const            error)
 {
-    if (!(approach->depth >= DIG_APPROACH_DEPTH_LEAST &&
-          approach->depth <= DIG_APPROACH_DEPTH_MOST)) {
-        return dig_error_set(error, DIG_EINVAL, "trajectory %s: depth %g, expected %g to %g",
-                             trajectory->name, approach->depth, DIG_APPROACH_DEPTH_LEAST,
-                             DIG_APPROACH_DEPTH_MOST);
-    }
-    if (!(fabs(approach->attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12))) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "trajectory %s: attack %g deg, expected -45 to 45 deg",
-                             trajectory->name, approach->attack_rad / DIG_RAD_PER_DEG);
-    }
-    return DIG_OK;
+    struct dig_conditions c = { .error = error };
+    dig_require(&c,
+                approach->depth >= DIG_APPROACH_DEPTH_LEAST &&
+                    approach->depth <= DIG_APPROACH_DEPTH_MOST,
+                "trajectory %s: depth %g, expected %g to %g", trajectory->name, approach->depth,
+                DIG_APPROACH_DEPTH_LEAST, DIG_APPROACH_DEPTH_MOST);
+    dig_require(&c, fabs(approach->attack_rad) <= DIG_APPROACH_ATTACK_MOST_rad * (1.0 + 1e-12),
+                "trajectory %s: attack %g deg, expected -45 to 45 deg", trajectory->name,
+                approach->attack_rad / DIG_RAD_PER_DEG);
+    return c.status;
 }
 
 enum dig_status dig_approach_apply(const struct dig_trajectory *const trajectory,

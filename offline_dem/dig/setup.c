@@ -11,19 +11,15 @@ enum dig_status dig_setup_check(const struct dig_scene *const  scene,
                                 const struct dig_gravel *const gravel,
                                 struct dig_error *const        error)
 {
-    const enum dig_status status = dig_scene_check(scene, error);
-    if (status != DIG_OK) {
-        return status;
-    }
+    struct dig_conditions c = { .status = dig_scene_check(scene, error), .error = error };
     for (int a = 0; a < DIG_AXES; a++) {
-        const double value = gravel->value[a];
-        if (!isfinite(value) || value < 0.0 || (a == DIG_AXIS_DENSITY_kgpm3 && !(value > 0.0))) {
-            return dig_error_set(error, DIG_EINVAL, "%s: %g, expected %s",
-                                 dig_axis_name((enum dig_axis)a), value,
-                                 a == DIG_AXIS_DENSITY_kgpm3 ? "> 0" : ">= 0");
-        }
+        const double value   = gravel->value[a];
+        const bool   density = a == DIG_AXIS_DENSITY_kgpm3;
+        dig_require(&c, isfinite(value) && (density ? value > 0.0 : value >= 0.0),
+                    "%s: %g, expected %s", dig_axis_name((enum dig_axis)a), value,
+                    density ? "> 0" : ">= 0");
     }
-    return DIG_OK;
+    return c.status;
 }
 
 // Counts of steps stay far below what an integer holds.
