@@ -60,7 +60,9 @@ enum dig_status dig_estimator_init(struct dig_estimator *const                es
     estimator->settings  = *settings;
     estimator->recording = &estimator->own[0];
     estimator->spare     = &estimator->own[1];
-    estimator->rates     = (struct dig_rates_filter){ .window_s = DIG_SENSED_RATES_s };
+    estimator->rates     = (struct dig_rates_filter){
+            .window_s = machine->sensor.fitted ? DIG_SENSED_RATES_s : DIG_JOINT_RATES_s,
+    };
     dig_estimator_set_table(estimator, set);
     return DIG_OK;
 }
@@ -172,9 +174,12 @@ static void follow_dig(struct dig_estimator *const e, const int64_t time_ns, con
                        const struct dig_path_point *const point,
                        const double                       joint_rad[const DIG_JOINTS])
 {
+    // A boom that brakes is no ground; in the ground it would end no dig.
+    const double doubt_Nm = e->phase.phase == DIG_PHASE_AIR ? e->inertia_Nm : 0.0;
+
     const enum dig_phase_event event =
         dig_phase_step(&e->phase, &e->settings, dt_s, wrench->My_Nm, wrench->sigma_My_Nm,
-                       wrench->slow_sigma_My_Nm);
+                       hypot(wrench->slow_sigma_My_Nm, doubt_Nm));
     dig_recorded_dig_add(e->recording, e->set, e->lambda, time_ns, wrench, e->phase.bias_Nm,
                          pitch_rad, point, joint_rad);
 

@@ -27,7 +27,8 @@ struct dig_estimator {
     struct dig_route              route[DIG_TRAJECTORY_MAX];
     struct dig_corrected_machine  corrected; // the machine as a model corrects it
 
-    struct dig_rates_filter rates; // of the joints while a correction applies; of a rig's pose
+    struct dig_rates_filter rates; // of the joints; of a rig's pose
+    double inertia_Nm;             // what the masses may add to My, 1 sigma; 0 by a force sensor
 
     // of the sample before
     bool    started;

@@ -82,9 +82,6 @@ void dig_estimator_set_machine(struct dig_estimator *const               estimat
         memcmp(&corrected->correction, &before->correction, sizeof before->correction) == 0) {
         return;
     }
-    if (corrected->corrects && !before->corrects) {
-        estimator->rates = (struct dig_rates_filter){ .window_s = DIG_JOINT_RATES_s };
-    }
     *before = *corrected;
 
     dig_phase_reset(&estimator->phase);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-// Error of the statics (inertia, seals), in sigmas of one sample.
+// Error of the statics (seals), in sigmas of one sample.
 static const double unmodelled_share = 0.5;
 
 // Times a condition; true once it has held for long enough.

@@ -8,7 +8,7 @@
 //
 // The moment is low-passed over contact_hold_s, so that no single sample decides. The threshold is
 // contact_sigmas times its error: the slow part of the sample's sigma, which no filter removes, and
-// half the sigma for what the statics lack (inertia, seals). Half the threshold is the hysteresis.
+// half the sigma for what the statics lack (seals). Half the threshold is the hysteresis.
 
 #ifndef DIG_ESTIMATOR_TRACK_PHASE_H
 #define DIG_ESTIMATOR_TRACK_PHASE_H

@@ -28,26 +28,38 @@ static struct dig_rig_track  track;
 static struct dig_curve_set *set;
 static struct dig_measured   direct[DIGS]; // of the force recordings
 
+// Both digs, moved so briskly in the air between them.
+static void build_track(const double air_pace, struct dig_rig_track *const made)
+{
+    struct dig_recording         recording[DIGS];
+    struct dig_error             error = { "" };
+    struct dig_rig_track_options how   = dig_rig_track_options_default();
+    how.placed   = true; // where digrig would put it: the search takes seconds
+    how.pin_X_m  = 7.43;
+    how.pin_Z_m  = -0.62;
+    how.air_pace = air_pace;
+    for (int d = 0; d < DIGS; d++) {
+        recording[d] = read_recording(file[d]);
+    }
+    assert_ok(dig_rig_track_build(&machine, &how, DIGS, recording, made, &error), error);
+    for (int d = 0; d < DIGS; d++) {
+        dig_recording_finish(&recording[d]);
+    }
+}
+
 static int build(void **state)
 {
     (void)state;
     const struct made_options options = { .relative_sd = 0.1, .packings = 3 };
-    struct dig_recording      recording[DIGS];
-    struct dig_error          error = { "" };
-    set                             = made_table(&options);
-    machine                         = read_machine("zx200_trench");
+    struct dig_error          error   = { "" };
+    set                               = made_table(&options);
+    machine                           = read_machine("zx200_trench");
     for (int d = 0; d < DIGS; d++) {
-        recording[d] = read_recording(file[d]);
-        assert_ok(dig_observe_dig(set, &recording[d], &direct[d], &error), error);
+        struct dig_recording recording = read_recording(file[d]);
+        assert_ok(dig_observe_dig(set, &recording, &direct[d], &error), error);
+        dig_recording_finish(&recording);
     }
-    struct dig_rig_track_options how = dig_rig_track_options_default();
-    how.placed                       = true; // where digrig would put it: the search takes seconds
-    how.pin_X_m                      = 7.43;
-    how.pin_Z_m                      = -0.62;
-    assert_ok(dig_rig_track_build(&machine, &how, DIGS, recording, &track, &error), error);
-    for (int d = 0; d < DIGS; d++) {
-        dig_recording_finish(&recording[d]);
-    }
+    build_track(1.0, &track);
     return 0;
 }
 
@@ -60,13 +72,14 @@ static int tear_down(void **state)
 }
 
 // By a machine that stands pitched by so much on ground that is pitched alike.
-static struct dig_machine_recording record_pitched(const double pitch_rad)
+static struct dig_machine_recording record_along(const struct dig_rig_track *const along,
+                                                 const double                      pitch_rad)
 {
-    struct dig_machine_recording r     = { track.rows, malloc(track.rows * sizeof *r.row) };
+    struct dig_machine_recording r     = { along->rows, malloc(along->rows * sizeof *r.row) };
     struct dig_rig_noise         noise = dig_rig_noise_init(7);
-    for (size_t i = 0; i < track.rows; i++) {
-        const int64_t      time_ns = llround((double)i * track.step_s * 1e9) + 1;
-        struct dig_rig_row row     = track.row[i];
+    for (size_t i = 0; i < along->rows; i++) {
+        const int64_t      time_ns = llround((double)i * along->step_s * 1e9) + 1;
+        struct dig_rig_row row     = along->row[i];
         for (int j = 0; j < DIG_JOINTS && fabs(pitch_rad) > 0.0; j++) {
             push_more(&machine, &row, j, pitch_N(&machine, &row.joints, j, pitch_rad));
         }
@@ -80,7 +93,7 @@ static struct dig_machine_recording record_pitched(const double pitch_rad)
 
 static struct dig_machine_recording record(void)
 {
-    return record_pitched(0.0);
+    return record_along(&track, 0.0);
 }
 
 // Norm of the difference over that of the moment, where both were measured.
@@ -131,6 +144,25 @@ TEST(every_dig_is_found_and_resists_as_the_force_recording_says)
     expect_both(&digs);
     dig_observed_digs_finish(&digs);
     dig_machine_recording_finish(&r);
+}
+
+// What a boom's inertia reads as is no ground.
+TEST(a_boom_that_brakes_in_the_air_digs_nothing)
+{
+    const struct dig_machine light = machine;
+    struct dig_rig_track     brisk;
+    machine.link[DIG_JOINT_BUCKET].mass_kg *= 2.0;
+    build_track(4.0, &brisk);
+    struct dig_machine_recording r     = record_along(&brisk, 0.0);
+    struct dig_observed_digs     digs  = { .digs = 0 };
+    struct dig_error             error = { "" };
+    assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
+    assert_int_equal(digs.seen, DIGS);
+    expect_both(&digs);
+    dig_observed_digs_finish(&digs);
+    dig_machine_recording_finish(&r);
+    dig_rig_track_finish(&brisk);
+    machine = light;
 }
 
 // What was not measured is not made up: the other dig is whole.
@@ -221,7 +253,7 @@ TEST(a_machine_pitched_as_its_ground_digs_along_its_own_frame)
     struct dig_error             error = { "" };
     assert_ok(dig_observe_machine(&machine, NULL, set, &level, &as, &error), error);
     for (int way = -1; way <= 1; way += 2) {
-        struct dig_machine_recording r    = record_pitched(3.0 * way * DIG_RAD_PER_DEG);
+        struct dig_machine_recording r    = record_along(&track, 3.0 * way * DIG_RAD_PER_DEG);
         struct dig_observed_digs     digs = { .digs = 0 };
         assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
         expect_both(&digs);
