@@ -91,6 +91,67 @@ TEST_WITH(how_a_dig_ended_is_told_where_the_log_tells_it, fresh, NULL)
     }
 }
 
+// A dig, ten seconds later the clock is set by ten days, then a match; a second after that it is
+// set back. All is told by the last clock.
+TEST_WITH(a_clock_that_is_set_moves_what_was_before, fresh, NULL)
+{
+    static const int64_t  second = 1000000;
+    const int64_t         days[] = { 10, -3 };
+    lcm_eventlog_t *const log    = begin("set.lcm");
+    digsight_health_t     h      = healthy();
+    int64_t               at     = START_us;
+    int64_t               set    = 0;
+    put_dig(log, at, 4, 8000.0);
+    for (int i = 0; i < 2; i++) {
+        at += 10 * second;
+        h.time_ns = 1000 * at;
+        log_health(log, "DIGSIGHT_HEALTH", at + set, &h);
+        set += days[i] * 24 * 60 * MINUTE;
+        at += second;
+        h.time_ns = 1000 * at;
+        log_health(log, "DIGSIGHT_HEALTH", at + set, &h);
+        put_match(log, at + second / 2 + set, 0.4, true, no_text);
+    }
+    lcm_eventlog_destroy(log);
+    read_log("set.lcm");
+    assert_int_equal(shift.digs, 1);
+    assert_int_equal(shift.dig[0].time_us, START_us + set);
+    assert_int_equal(shift.first_us, START_us + set);
+    assert_int_equal(shift.last_us, at + second / 2 + set);
+    assert_int_equal(shift.gravels, 2);
+    assert_int_equal(shift.gravel[0].time_us, START_us + 11 * second + second / 2 + set);
+    assert_int_equal(shift.gravel[1].time_us, shift.last_us);
+    assert_int_equal(shift.events, 1);
+    assert_string_equal(shift.event[0].text->name, "clock");
+    assert_int_equal(shift.event[0].count, 2);
+    assert_int_equal(shift.event[0].from_us, START_us + 11 * second + set);
+}
+
+// Nor is it taken for set where nobody was there for a day, or the computer was started anew.
+TEST_WITH(a_pause_or_another_start_is_no_clock_that_was_set, fresh, NULL)
+{
+    static const struct {
+        int64_t log_us, mono_us;
+    } later[] = { { 24 * 60 * MINUTE, 24 * 60 * MINUTE },       // a pause
+                  { 24 * 60 * MINUTE, 24 * 60 * MINUTE / 100 }, // on a slow bench
+                  { 24 * 60 * MINUTE, -MINUTE },                // another start
+                  { MINUTE / 2, 1 },                            // less than it is seen by
+                  { -500000, 1000000 } };                       // two senders, late
+    for (size_t i = 0; i < sizeof later / sizeof later[0]; i++) {
+        (void)fresh(NULL);
+        lcm_eventlog_t *const log = begin("pause.lcm");
+        digsight_health_t     h   = healthy();
+        h.time_ns                 = 1000 * START_us;
+        log_health(log, "DIGSIGHT_HEALTH", START_us, &h);
+        h.time_ns += 1000 * later[i].mono_us;
+        log_health(log, "DIGSIGHT_HEALTH", START_us + later[i].log_us, &h);
+        lcm_eventlog_destroy(log);
+        read_log("pause.lcm");
+        assert_int_equal(shift.events, 0);
+        assert_int_equal(shift.last_us, START_us + later[i].log_us);
+    }
+}
+
 TEST_WITH(a_log_that_is_none_or_damaged_is_refused, fresh, NULL)
 {
     struct dig_error error = { "" };

@@ -22,6 +22,9 @@ static const struct dig_health_text outside  = { "outside",
                                                  "a simple dig was none of the table's gravels",
                                                  "do not rely on predictions of that ground" };
 
+static const struct dig_health_text clock_set = { "clock", "the clock of the computer was set",
+                                                  "times before it are those of the new clock" };
+
 void digreport_shift_begin(struct digreport_shift *const shift, const double lambda)
 {
     assert(shift != NULL);
@@ -66,7 +69,10 @@ static void add_event(struct digreport_shift *const shift, const int64_t time_us
     dig_text_copy(DIGREPORT_TEXT, e.said, said);
     for (size_t back = 0; back < LOOK_BACK && back < shift->events; back++) {
         struct digreport_event *const old = &shift->event[shift->events - 1 - back];
-        if (old->text == text && strcmp(old->said, e.said) == 0 &&
+        // Times of logs before are those of a clock already.
+        const bool moved =
+            shift->clock.moved_us != 0 && shift->events - 1 - back < shift->log_events;
+        if (!moved && old->text == text && strcmp(old->said, e.said) == 0 &&
             llabs(time_us - old->to_us) <= SAME_EVENT_us) {
             old->to_us = time_us;
             old->count = old->count < COUNT_MOST ? old->count + count : old->count;
@@ -81,10 +87,23 @@ static void add_event(struct digreport_shift *const shift, const int64_t time_us
     }
 }
 
-static void take_estimate(void *const context, const int64_t time_us,
+// The time of a message on a clock that nobody sets.
+static int64_t shift_time(struct digreport_shift *const shift, const int64_t time_us,
+                          const int64_t time_ns)
+{
+    const bool    is_set = digreport_clock_is_set(&shift->clock, time_us, time_ns);
+    const int64_t time   = time_us + shift->clock.moved_us;
+    if (is_set) {
+        add_event(shift, time, &clock_set, "", 1);
+    }
+    return time;
+}
+
+static void take_estimate(void *const context, const int64_t log_us,
                           const digsight_estimate_t *const said)
 {
-    struct digreport_shift *const shift = context;
+    struct digreport_shift *const shift   = context;
+    const int64_t                 time_us = shift_time(shift, log_us, said->time_ns);
     struct digreport_dig          dig;
     bool                          finished = false;
     shift->status = digreport_track_estimate(&shift->track, time_us, said, &finished, &dig);
@@ -151,11 +170,13 @@ static bool is_gravel(const struct dig_gravel *const gravel)
 }
 
 // MATCH comes once a second; what is new has another time, or has ended.
-static void take_match(void *const context, const int64_t time_us,
+static void take_match(void *const context, const int64_t log_us,
                        const digsight_match_t *const said)
 {
     struct digreport_shift *const shift = context;
-    const bool                    known = said->valid != 0;
+    // Said again, it has the time of before.
+    const int64_t time_us = shift_time(shift, log_us, shift->clock.time_ns);
+    const bool    known   = said->valid != 0;
     take_ending(shift, said);
     if (said->going_on || (said->time_ns == shift->match_ns && known == shift->match_known)) {
         return;
@@ -192,11 +213,12 @@ static void take_match(void *const context, const int64_t time_us,
     }
 }
 
-static void take_health(void *const context, const int64_t time_us,
+static void take_health(void *const context, const int64_t log_us,
                         const digsight_health_t *const said)
 {
-    struct digreport_shift *const       shift = context;
-    const struct dig_health_text *const state = dig_health_state_text(said->state);
+    struct digreport_shift *const       shift   = context;
+    const int64_t                       time_us = shift_time(shift, log_us, said->time_ns);
+    const struct dig_health_text *const state   = dig_health_state_text(said->state);
     int64_t                             count[DIG_HEALTH_COUNTERS];
     dig_health_counts(said, count);
     if (state != NULL) {
@@ -243,10 +265,29 @@ static enum dig_status take(void *const context, const struct dig_lcm_log *const
         shift->misread++;
         return DIG_OK;
     }
-    shift->first_us = shift->messages == 0 ? event->time_us : shift->first_us;
-    shift->last_us  = event->time_us;
+    const int64_t time_us = event->time_us + shift->clock.moved_us;
+    shift->first_us       = shift->messages == 0 ? time_us : shift->first_us;
+    shift->last_us        = time_us;
     shift->messages++;
     return shift->status;
+}
+
+// What a clock shows when it was set last is right: the log's times become that clock's.
+static void take_last_clock(struct digreport_shift *const shift, const bool first)
+{
+    const int64_t moved_us = shift->clock.moved_us;
+    for (size_t i = shift->log_digs; i < shift->digs; i++) {
+        shift->dig[i].time_us -= moved_us;
+    }
+    for (size_t i = shift->log_gravels; i < shift->gravels; i++) {
+        shift->gravel[i].time_us -= moved_us;
+    }
+    for (size_t i = shift->log_events; i < shift->events; i++) {
+        shift->event[i].from_us -= moved_us;
+        shift->event[i].to_us -= moved_us;
+    }
+    shift->first_us -= first ? moved_us : 0;
+    shift->last_us -= moved_us;
 }
 
 enum dig_status digreport_shift_log(struct digreport_shift *const shift, const char *const log,
@@ -254,12 +295,17 @@ enum dig_status digreport_shift_log(struct digreport_shift *const shift, const c
 {
     assert(shift != NULL && log != NULL);
     digreport_track_finish(&shift->track);
-    shift->any_health = false;
-    shift->log_digs   = shift->digs;
-    shift->match_ns   = 0;
-    shift->status     = DIG_OK;
+    const bool first   = shift->messages == 0;
+    shift->any_health  = false;
+    shift->clock       = (struct digreport_clock){ .any = false };
+    shift->log_digs    = shift->digs;
+    shift->log_gravels = shift->gravels;
+    shift->log_events  = shift->events;
+    shift->match_ns    = 0;
+    shift->status      = DIG_OK;
 
     const enum dig_status status = dig_lcm_log_walk(log, take, shift, error);
+    take_last_clock(shift, first);
     return shift->status == DIG_OK ? status
                                    : dig_error_set(error, status, "%s: out of memory", log);
 }

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "files/lcm/health_text.h"
 #include "files/lcm/lcm_message.h"
+#include "tools/digreport/shift_clock.h"
 #include "tools/digreport/shift_dig.h"
 
 #define DIGREPORT_TEXT 256
@@ -42,13 +43,14 @@ struct digreport_shift {
     struct digreport_dig_track track;
 
     // Of the log that is read.
-    bool            any_health;
-    int64_t         count[DIG_HEALTH_COUNTERS], reloads;
-    int64_t         log_ended[DIGREPORT_ENDINGS];
-    size_t          log_digs; // digs of logs before
-    int64_t         match_ns; // time of the last match
-    bool            match_known;
-    enum dig_status status; // of the last message
+    bool                   any_health;
+    int64_t                count[DIG_HEALTH_COUNTERS], reloads;
+    int64_t                log_ended[DIGREPORT_ENDINGS];
+    size_t                 log_digs, log_gravels, log_events; // of logs before
+    struct digreport_clock clock;
+    int64_t                match_ns; // time of the last match
+    bool                   match_known;
+    enum dig_status        status; // of the last message
 };
 
 /// A machine this much larger than the table's rig; 0: not known. The moving average of moments
