@@ -26,6 +26,18 @@ static void put_data(FILE *const to, const size_t index, const struct dig_plot_s
     (void)fprintf(to, "EOD\n");
 }
 
+// Up to ten gnuplot would mark halves and fifths.
+static bool marks_each(const struct dig_plot *const plot)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < plot->series; i++) {
+        for (size_t k = 0; k < plot->s[i].n; k++) {
+            most = isfinite(plot->s[i].y[k]) ? fmax(most, plot->s[i].y[k]) : most;
+        }
+    }
+    return plot->counts && most <= 10.0;
+}
+
 // Nothing of this is a caller's text.
 static void put_script(FILE *const to, const struct dig_plot *const plot, const unsigned height)
 {
@@ -49,6 +61,7 @@ static void put_script(FILE *const to, const struct dig_plot *const plot, const 
     if (plot->x_to > 0.0) {
         (void)fprintf(to, "set xrange [0:%.9g]\n", plot->x_to);
     }
+    (void)fputs(marks_each(plot) ? "set ytics 1\n" : "", to);
     (void)fputs(plot->from_zero ? "set yrange [*<0:*]\n" : "", to);
     for (size_t i = 0; i < plot->series; i++) {
         put_data(to, i, &plot->s[i]);

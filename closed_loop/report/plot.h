@@ -49,6 +49,7 @@ struct dig_plot {
     double                 right_factor; // what y is on it: y times this
     double                 x_to;         // the axis goes from 0 to here; 0: as the points lie
     bool                   from_zero;    // the y axis holds 0
+    bool                   counts;       // y counts something: no marks between whole numbers
     unsigned               height;       // of 480 wide, where text is 14 high
     size_t                 series;       // drawn in this order, later ones on top
     struct dig_plot_series s[DIG_PLOT_SERIES_MAX];

@@ -97,6 +97,7 @@ static void put_picture(const struct digreport_page *const page, FILE *const to,
         .y_label   = p->y_label,
         .x_to      = x_to,
         .from_zero = true,
+        .counts    = picture == DIGS,
         .height    = 340,
     };
     if (p->right_label != NULL && shift->lambda > 0.0) {
