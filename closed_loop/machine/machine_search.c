@@ -63,7 +63,7 @@ static enum dig_status tell_noise(const struct dig_machine_side *const side,
         dig_lines_update(&s.fit.lines, all);
         dig_fit_sum(&s.fit, NULL, NULL);
         dig_fit_solve(&s.fit, DIG_MACHINE_ALL_EFFECTS, &answer);
-        slews = dig_slew_leave_out(&s.fit.lines, s.fit.at);
+        slews = dig_slew_leave_out(&s.fit.lines, s.fit.at, DIG_SLEW_LONG);
     }
     if (status == DIG_OK && s.air.rows > 0) {
         status = dig_machine_noise_tell(&s.fit.lines, s.fit.at, noise);

@@ -52,25 +52,28 @@ static void refine(struct dig_machine_search *const s)
     make_linear(s);
 }
 
-// Leaves out what slewing pulls beside all effects as the trusted rows have them.
-static bool leave_out_slewing(struct dig_machine_search *const s)
+// Leaves out what slewing pulls, or the ground, beside all effects as the trusted rows have them.
+static bool leave_out(struct dig_machine_search *const s, const enum dig_slew which)
 {
     struct dig_fit_answer all = { .at = s->fit.at };
     make_linear(s);
     dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
-    return dig_slew_leave_out(&s->fit.lines, s->fit.at);
+    return dig_slew_leave_out(&s->fit.lines, s->fit.at, which);
 }
 
 // The equations without any effect and without what slewing pulls, rows as far as their own scatter
 // lets them be known.
 static void begin(struct dig_machine_search *const s)
 {
-    for (int round = 0; round < ROUNDS && leave_out_slewing(s); round++) {
+    for (int round = 0; round < ROUNDS && leave_out(s, DIG_SLEW_LONG); round++) {
     }
     s->noise2 = 1.0;
     if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
         s->noise2 = own_noise;
         make_linear(s);
+    }
+    // Only beyond that noise a block tells of the ground.
+    for (int round = 0; round < ROUNDS && leave_out(s, DIG_SLEW_TOUCHES); round++) {
     }
     s->slow = dig_lines_judge(&s->fit.lines);
 }
@@ -316,7 +319,7 @@ enum dig_status dig_machine_select(struct dig_machine_search *const s)
     for (int after = 0; after < 2 && asked && !clear; after++) {
         dig_slew_rows_restore(&all, &s->air);
         trust_only(s, after > 0);
-        if (leave_out_slewing(s)) {
+        if (leave_out(s, DIG_SLEW_LONG)) {
             trust_all(s);
             select_effects(s);
             clear = !dig_machine_is_unclear(s);

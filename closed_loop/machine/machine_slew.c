@@ -101,7 +101,7 @@ static bool add_block(const struct dig_air *const air, const enum cause cause, c
     return is;
 }
 
-static bool is_clear(const struct stretch *const s)
+static bool is_clear(const struct stretch *const s, const double least_blocks)
 {
     const double by =
         s->pull2[ABOUT][ABOUT] > 0.0 ? s->pull2[UP][ABOUT] / s->pull2[ABOUT][ABOUT] : 0.0;
@@ -114,7 +114,7 @@ static bool is_clear(const struct stretch *const s)
         return false;
     }
     const double explained = about + up_left * up_left / up2;
-    return s->blocks >= LEAST_BLOCKS && 0.5 * up_left * up_left / up2 > least_evidence &&
+    return s->blocks >= least_blocks && 0.5 * up_left * up_left / up2 > least_evidence &&
            explained > least_share * (s->left2 - s->rows);
 }
 
@@ -135,14 +135,15 @@ static void mark(const struct dig_air *const air, const struct dig_air_segment *
 
 // Marks what is pulled so in a segment.
 static void find(const struct dig_air *const air, const struct dig_air_segment *const segment,
-                 const enum cause cause, const double left[], double out[])
+                 const enum cause cause, const double least_blocks, const double left[],
+                 double out[])
 {
     const size_t end = segment->first_row + segment->rows;
     for (size_t r = segment->first_row; r < end;) {
         struct stretch stretch = { .end = r };
         while (stretch.end < end && add_block(air, cause, left, end, &stretch)) {
         }
-        if (is_clear(&stretch)) {
+        if (is_clear(&stretch, least_blocks)) {
             mark(air, segment, r, stretch.end, out);
         }
         r = stretch.end;
@@ -167,7 +168,7 @@ static void take_out(struct dig_air *const air, const double out[])
     air->rows = kept;
 }
 
-bool dig_slew_leave_out(struct dig_lines *const lines, const double at[])
+bool dig_slew_leave_out(struct dig_lines *const lines, const double at[], const enum dig_slew which)
 {
     assert(lines != NULL && at != NULL);
     struct dig_air *const air  = lines->air;
@@ -177,8 +178,12 @@ bool dig_slew_leave_out(struct dig_lines *const lines, const double at[])
     memset(out, 0, air->rows * sizeof *out);
     dig_lines_rest(lines, at, left);
     for (size_t s = 0; s < air->segments; s++) {
+        if (which == DIG_SLEW_TOUCHES) {
+            find(air, &air->segment[s], RESTS, 1.0, left, out);
+            continue;
+        }
         for (int cause = 0; cause < CAUSES; cause++) {
-            find(air, &air->segment[s], (enum cause)cause, left, out);
+            find(air, &air->segment[s], (enum cause)cause, LEAST_BLOCKS, left, out);
         }
     }
     for (size_t r = 0; r < air->rows; r++) {

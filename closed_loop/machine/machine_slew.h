@@ -11,11 +11,15 @@
 
 #include <stdbool.h>
 
-/// Takes out of the air the rows of every second or more in which either pull, with one size,
-/// explains most of what the values at (those that explain most) leave, and clearly. True: any
-/// went; what is left is then to be explained anew. Of air that is mostly such nothing is taken
-/// out.
-bool dig_slew_leave_out(struct dig_lines *lines, const double at[]);
+/// What is asked for: either pull for a second or more, which noise that lasts does not make; or
+/// the ground alone, touched for a fifth of a second or more, where such noise is in the rows'
+/// sigmas.
+enum dig_slew { DIG_SLEW_LONG, DIG_SLEW_TOUCHES };
+
+/// Takes out of the air all rows that long in which such a pull, with one size, explains most of
+/// what the values at (those that explain most) leave, and clearly. True: any went; what is left is
+/// then to be explained anew. Of air that is mostly such nothing is taken out.
+bool dig_slew_leave_out(struct dig_lines *lines, const double at[], enum dig_slew which);
 
 /// The rows that air has, to go back to. Free row.
 struct dig_slew_rows {

@@ -98,6 +98,22 @@ TEST(a_bucket_that_rests_high_up_raises_no_alarm_and_hides_no_seal)
     end(c);
 }
 
+// Or touches it for less than a second where the recording begins.
+TEST(a_bucket_that_touches_the_ground_raises_no_alarm_and_hides_no_seal)
+{
+    for (uint64_t seed = 174; seed <= most(174, 176); seed++) {
+        const double           kg[]    = { 800.0, 2500.0, 300.0 };
+        const struct fault     touches = { .stands = 120, .stands_kg = kg[seed - 174] };
+        struct campaign *const c       = trace(&touches, seed);
+        assert_nothing_found(c);
+        end(c);
+    }
+    const struct fault     both = { .stands = 120, .stands_kg = 800.0, .dry_N = 4000.0 };
+    struct campaign *const c    = trace(&both, 177);
+    expect_found(c, DIG_EFFECT_CYLINDER_FRICTION, "coulomb_N", 4000.0);
+    end(c);
+}
+
 // Noise that blocks do not average away is no effect; one that stands out of it is still found.
 TEST(valves_that_hunt_raise_no_alarm_and_hide_no_seal)
 {
