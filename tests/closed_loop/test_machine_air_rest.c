@@ -98,6 +98,31 @@ TEST(air_asked_again_with_any_number_of_a_correction_changed_answers_as_new_air)
     dig_air_finish(&air);
 }
 
+// By the pressures that are read the made-up machine is far from balance.
+TEST(calm_pressures_balance_the_machine_they_were_made_for)
+{
+    const struct dig_correction none  = { .delay_s = 0.0 };
+    const struct dig_correction heavy = { .link[DIG_JOINT_BUCKET] = { .mass_kg = 100.0 } };
+    struct dig_air              air   = make();
+    double *const               read  = malloc(3 * air.rows * sizeof *read);
+    double *const               calm  = read + air.rows;
+    double *const               other = calm + air.rows;
+    dig_air_calm(&air, &heavy);
+    dig_air_rest(&air, &heavy, false, read);
+    dig_air_rest(&air, &heavy, true, calm);
+    dig_air_rest(&air, &none, true, other);
+    double of_read = 0.0, of_other = 0.0;
+    for (size_t r = 0; r < air.rows; r++) {
+        assert_close(calm[r], 0.0, 1e-6);
+        of_read += read[r] * read[r] / (double)air.rows;
+        of_other += other[r] * other[r] / (double)air.rows;
+    }
+    print_message("%.3g sigmas as read, %.3g without the mass\n", sqrt(of_read), sqrt(of_other));
+    assert_true(of_read > 1.0 && of_other > 1.0);
+    free(read);
+    dig_air_finish(&air);
+}
+
 TEST(air_calmed_again_forgets_the_pressures_before)
 {
     const struct dig_correction none  = { .delay_s = 0.0 };
