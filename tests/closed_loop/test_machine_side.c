@@ -191,6 +191,21 @@ TEST(friction_and_a_strong_offset_are_both_named)
     end(clean);
 }
 
+// Begun with the friction alone, which explains most, the search stays with a friction that took
+// the offset for its own, beside another bucket or nothing (machine_select.c).
+TEST(a_strong_friction_does_not_keep_the_offset_beside_it)
+{
+    const struct fault both[] = { { .dry_N = 6000.0, .rod_Pa = 8e5 },
+                                  { .dry_N = 6000.0, .rod_Pa = 12e5 } };
+    for (size_t i = 0; i < most(1, 2); i++) {
+        struct campaign *const c = trace(&both[i], 37 + i);
+        assert_int_equal(c->finding.effects, 2);
+        assert_true(is_reported(&c->finding, DIG_EFFECT_CYLINDER_FRICTION));
+        assert_true(is_reported(&c->finding, DIG_EFFECT_PRESSURE_OFFSET));
+        end(c);
+    }
+}
+
 // A strong effect whose formula is right hides little beside it.
 TEST(a_form_that_the_air_shows_to_be_right_is_trusted)
 {
