@@ -11,10 +11,21 @@
 #include <string.h>
 
 // Margins trade rebuilds against idle contacts. Fastest on a bed of 7000 grains being dug
-// (docs/numerics/dem.md).
-static const struct dig_skin neighbour_skin = { 0.16, 100.0, INFINITY };
-#define CONTACT_MARGIN_RADII 0.008
-#define CONTACT_MARGIN_STEPS 20
+// (docs/numerics/dem.md); in double precision what the tables that ship were dug with. The most of
+// a margin keeps grains that fall from many idle contacts.
+struct margins {
+    struct dig_skin neighbour, contact;
+};
+
+static const struct margins margins_double = { { 0.16, 100.0, INFINITY },
+                                               { 0.008, 20.0, INFINITY } };
+static const struct margins margins_single = { { 0.2, 200.0, 0.7 }, { 0.006, 80.0, 0.12 } };
+
+static const struct margins *margins_of(const struct dig_world *const w)
+{
+    return w->single ? &margins_single : &margins_double;
+}
+
 // Cells along which grains are sorted. In single precision the reach of most pairs, so that these
 // lie in neighbouring layers of cells, and near each other in memory; in double precision what the
 // tables that ship were dug with.
@@ -27,11 +38,12 @@ static double speed(const struct dig_grains *const grains, const size_t i)
     return sqrt(m.v_mps[0] * m.v_mps[0] + m.v_mps[1] * m.v_mps[1] + m.v_mps[2] * m.v_mps[2]);
 }
 
-static double contact_margin(const struct dig_world *const w, const size_t i)
+static double margin(const struct dig_world *const w, const struct dig_skin *const skin,
+                     const size_t i)
 {
-    const struct dig_grains *const g = &w->grains;
-    return CONTACT_MARGIN_RADII * g->type[g->type_of[i]].radius_m +
-           CONTACT_MARGIN_STEPS * w->dt_s * speed(g, i);
+    const double radius_m = w->grains.type[w->grains.type_of[i]].radius_m;
+    const double moving_m = skin->steps * w->dt_s * speed(&w->grains, i);
+    return fmin(skin->radii * radius_m + moving_m, skin->most_radii * radius_m);
 }
 
 void dig_lists_renumber(struct dig_world *const w, const uint32_t new_index[])
@@ -102,12 +114,9 @@ static void wrap(void *const context, const size_t first, const size_t end)
 
 static void widen(void *const context, const size_t first, const size_t end)
 {
-    const struct rebuild *const    r      = context;
-    const struct dig_grains *const grains = &r->world->grains;
+    const struct rebuild *const r = context;
     for (size_t i = first; i < end; i++) {
-        const double radius_m = grains->type[grains->type_of[i]].radius_m;
-        const double moving_m = r->skin.steps * r->world->dt_s * speed(grains, i);
-        r->margin[i] = fmin(r->skin.radii * radius_m + moving_m, r->skin.most_radii * radius_m);
+        r->margin[i] = margin(r->world, &r->skin, i);
     }
 }
 
@@ -210,16 +219,17 @@ static bool is_covered(const struct dig_world *const w)
 
 static void set_margins(struct dig_world *const w)
 {
+    const struct dig_skin *const skin = &margins_of(w)->contact;
     for (size_t i = 0; i < w->grains.n; i++) {
         memcpy(w->reference_m[i], dig_grains_position(&w->grains, i), 3 * sizeof(double));
-        w->reference_m[i][3] = contact_margin(w, i);
+        w->reference_m[i][3] = margin(w, skin, i);
     }
     if (w->tool != NULL) {
         const double speed_mps =
             hypot(w->tool->vx_mps, w->tool->vz_mps) + w->tool->radius_m * fabs(w->tool->w_radps);
         w->tool_reference = w->tool->pose;
-        w->tool_margin_m  = CONTACT_MARGIN_RADII * w->grains.type[0].radius_m +
-                           2.0 * CONTACT_MARGIN_STEPS * w->dt_s * speed_mps;
+        w->tool_margin_m =
+            skin->radii * w->grains.type[0].radius_m + 2.0 * skin->steps * w->dt_s * speed_mps;
     }
 }
 
@@ -237,7 +247,7 @@ enum dig_status dig_lists_update(struct dig_world *const w)
     set_margins(w);
     if (!is_covered(w)) {
         dig_grains_end_single(&w->grains);
-        const enum dig_status status = dig_lists_rebuild(w, neighbour_skin);
+        const enum dig_status status = dig_lists_rebuild(w, margins_of(w)->neighbour);
         if (status != DIG_OK) {
             return status;
         }
