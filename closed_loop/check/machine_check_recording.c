@@ -11,7 +11,7 @@
 
 // A gap this long hides a motion; a rate below this is no machine recording.
 static const double most_gap_s   = 0.1;
-static const double least_Hz     = 50.0;
+static const double least_Hz     = 40.0;
 static const double few_missing  = 0.01;
 static const double many_missing = 0.2;
 

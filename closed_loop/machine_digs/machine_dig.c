@@ -2,7 +2,7 @@
 
 #include "closed_loop/machine_digs/free_air.h"
 #include "closed_loop/machine_digs/pose_jump.h"
-#include "closed_loop/machine_digs/pressure_units.h"
+#include "closed_loop/machine_digs/pressure_check.h"
 #include "core/sample.h"
 #include "estimator/approach/approach_route.h"
 #include "estimator/track/frame.h"
@@ -335,7 +335,7 @@ enum dig_status dig_machine_dig_make(const struct dig_machine *const           m
     made.lambda = machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     status      = check_jump(&made, error);
     if (status == DIG_OK) {
-        status = dig_pressure_units_check(machine, recording, error);
+        status = dig_pressure_check(machine, recording, error);
     }
     if (status == DIG_OK) {
         status = place(machine, set, trajectory, &v, &made, error);

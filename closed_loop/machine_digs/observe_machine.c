@@ -1,6 +1,6 @@
 #include "closed_loop/machine_digs/observe_machine.h"
 
-#include "closed_loop/machine_digs/pressure_units.h"
+#include "closed_loop/machine_digs/pressure_check.h"
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/observe_dig.h"
@@ -93,7 +93,7 @@ static enum dig_status observe(const struct dig_machine *const           machine
         return dig_error_set(error, status, "machine %s: %s", machine->name,
                              dig_status_str(status));
     }
-    status = dig_pressure_units_check(machine, recording, error);
+    status = dig_pressure_check(machine, recording, error);
     if (status != DIG_OK) {
         return status;
     }

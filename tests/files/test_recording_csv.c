@@ -219,6 +219,23 @@ TEST(defects_of_machine_recordings_are_told_too)
     assert_int_equal(r.rows, 42);
 }
 
+// A bus of 50 Hz that loses rows, a logger of 49.9 Hz, an hour between two digs.
+TEST(a_machine_recording_may_lack_rows_now_and_then)
+{
+    struct dig_machine_recording r     = { .rows = 0 };
+    struct dig_error             error = { "" };
+    char                         text[8192];
+    size_t                       at  = (size_t)snprintf(text, sizeof text, "%s", MACHINE);
+    double                       t_s = 0.0;
+    for (int i = 0; i < 100; i++) {
+        t_s += i == 50 ? 3600.0 : i % 10 == 0 ? 0.04008 : 0.02004;
+        at += (size_t)snprintf(text + at, sizeof text - at, "%.5f,1,1,1,1,1,1,1,1,1\n", t_s);
+    }
+    assert_ok(dig_machine_recording_read(scratch_write("lost.csv", text), &r, &error), error);
+    assert_int_equal(r.rows, 100);
+    dig_machine_recording_finish(&r);
+}
+
 // Loggers count seconds since 1970.
 TEST(times_may_be_of_a_calendar)
 {
