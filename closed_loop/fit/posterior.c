@@ -20,6 +20,10 @@ enum {
 // Accepted between these, a step is neither too short nor too long.
 static const double few_accepted = 0.2, many_accepted = 0.4;
 
+// How far templates are off, as a share of what an effect adds, is known to within a factor of e to
+// this: 1 sigma of its logarithm.
+static const double log_share = 2.0;
+
 struct point {
     double x[NUMBERS];
     double misfit;
@@ -30,6 +34,8 @@ struct point {
 struct cloud {
     struct dig_likelihood likelihood;
     double                low[NUMBERS], high[NUMBERS];
+    double                added[DIG_TRAJECTORY_MAX * DIG_FEATURES]; // by the effects at the fit
+    double                squares;                                  // of them; 0 without templates
     double                power;
     struct point          point[POINTS], old[POINTS];
     double                lower[NUMBERS * NUMBERS]; // L of the points' covariance = L L'
@@ -41,13 +47,42 @@ struct cloud {
     double                z_squares[DIG_STEPS_MAX * DIG_STEPS_MAX];
 };
 
+// What the effects add to each group, in the batch's amplitudes.
+static void fill_added(const struct dig_likelihood *const l, const double x[],
+                       double added[DIG_TRAJECTORY_MAX * DIG_FEATURES])
+{
+    for (size_t g = 0; g < l->batch->groups; g++) {
+        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        double *const                               of    = added + g * DIG_FEATURES;
+        const struct dig_plain plain = dig_plain_of(l->batch->soil, group->trajectory, x);
+        (void)dig_forward_added(l->batch, g, &plain, l->hypothesis, x, of);
+        for (size_t f = 0; f < DIG_FEATURES; f++) {
+            of[f] /= group->amplitude[f / DIG_FEATURE_BINS];
+        }
+    }
+}
+
+// The templates' error is as large as at the fit. Where the effects add more or less of what they
+// add there, it is another share of them, which is as likely as that.
+static double misfit_of_share(const struct cloud *const c, const double x[])
+{
+    static const double nothing = 1e-6;
+    const size_t        n       = c->likelihood.batch->groups * DIG_FEATURES;
+    double              added[DIG_TRAJECTORY_MAX * DIG_FEATURES];
+    if (!(c->squares > 0.0)) {
+        return 0.0;
+    }
+    fill_added(&c->likelihood, x, added);
+    return pow(log(fmax(dig_product(n, added, c->added) / c->squares, nothing)) / log_share, 2.0);
+}
+
 // Tells misfit and z of a point at its x.
 static void look(struct cloud *const c, struct point *const point)
 {
     const struct dig_likelihood *const l = &c->likelihood;
     double                             squares;
     dig_likelihood_residual(&c->likelihood, point->x, c->residual);
-    point->misfit = dig_likelihood_misfit(l, c->residual, &squares);
+    point->misfit = dig_likelihood_misfit(l, c->residual, &squares) + misfit_of_share(c, point->x);
     memcpy(point->z, c->residual + l->residuals - l->steps, l->steps * sizeof point->z[0]);
 }
 
@@ -264,6 +299,10 @@ void dig_posterior_intervals(const struct dig_whitened_digs *const batch, const 
     dig_likelihood_weigh(&c.likelihood, fitted->number);
     dig_hypothesis_bounds(batch->soil, &fitted->hypothesis, c.low, c.high);
     dig_shifts_common(batch, &fitted->hypothesis, fitted->number, c.common);
+    if (dig_shifts_templated(&fitted->hypothesis)) {
+        fill_added(&c.likelihood, fitted->number, c.added);
+        c.squares = dig_product(batch->groups * DIG_FEATURES, c.added, c.added);
+    }
     c.reach = 2.4 / sqrt((double)c.likelihood.numbers);
     anneal(&c, seed);
     for (size_t j = 0; j < c.likelihood.numbers; j++) {

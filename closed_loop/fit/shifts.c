@@ -27,7 +27,7 @@ static bool is_templated(const enum dig_effect_id effect)
     return known != NULL && known->templated;
 }
 
-static bool any_templated(const struct dig_hypothesis *const hypothesis)
+bool dig_shifts_templated(const struct dig_hypothesis *const hypothesis)
 {
     bool any = false;
     for (size_t e = 0; e < hypothesis->effects; e++) {
@@ -95,7 +95,7 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
     assert(batch != NULL && hypothesis != NULL && shifts != NULL);
     const size_t trajectory = batch->group[group].trajectory;
     const size_t numbers    = DIG_AT_U(hypothesis->effects); // that the hypothesis has
-    const bool   templated  = any_templated(hypothesis);
+    const bool   templated  = dig_shifts_templated(hypothesis);
     double       moved[DIG_HYPOTHESIS_NUMBERS];
     double       there[DIG_FEATURES];
     shifts->shifts = 0;
@@ -147,7 +147,7 @@ void dig_shifts_common(const struct dig_whitened_digs *const batch,
 {
     assert(batch != NULL && hypothesis != NULL && sigma != NULL);
     memset(sigma, 0, DIG_HYPOTHESIS_NUMBERS * sizeof sigma[0]);
-    if (!any_templated(hypothesis)) {
+    if (!dig_shifts_templated(hypothesis)) {
         return;
     }
     const double size = size_of_effects(batch, hypothesis, number);

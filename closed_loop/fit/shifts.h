@@ -18,6 +18,9 @@ struct dig_shifts {
     double as_gravels[DIG_AXES][DIG_FEATURES];
 };
 
+/// True where some effect has templates, which may be off.
+bool dig_shifts_templated(const struct dig_hypothesis *hypothesis);
+
 /// The shifts of a group's mean dig, each of a trajectory's own. plain: at number; added: what the
 /// effects add there.
 void dig_shifts_fill(const struct dig_whitened_digs *batch, size_t group,

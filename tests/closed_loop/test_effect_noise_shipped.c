@@ -137,4 +137,36 @@ TEST(intervals_beside_an_effect_hold)
     assert_true((double)held[1] >= 0.7 * (double)all[1]);
 }
 
+// A dig along each of two trajectories as the model itself has it, with a rock of 22 mm. What the
+// rock adds may be off by a share of itself, so that without a rock nothing explains it.
+TEST(a_rock_that_is_felt_is_not_absent)
+{
+    static struct dig_whitened_digs batch;
+    static struct dig_measured      dig[2];
+    static const bool               all[2] = { true, true };
+    const struct dig_gravel         gravel = { { 0.35, 0.75, 1800 } };
+    const struct dig_entry          rock   = { .effect = DIG_EFFECT_OBSTACLE, .magnitude = 0.022 };
+    struct dig_fitted truth = { .hypothesis = { .effects = 1, .effect = { rock.effect } } };
+    struct dig_fitted fitted;
+    dig_response_surface_place(surface, &gravel, truth.number);
+    truth.number[DIG_AT_U(0)]        = u_of(&rock);
+    truth.number[DIG_AT_CONTRAST(0)] = 1.0;
+    for (size_t t = 0; t < 2; t++) {
+        dig[t] = (struct dig_measured){ .trajectory = (int)t,
+                                        .use        = DIG_USE_FIT,
+                                        .pass       = 1,
+                                        .pace       = 1.0,
+                                        .last       = 1.0,
+                                        .measured   = { true, true, true } };
+        dig_fitted_curve(soil, &truth, &dig[t], dig[t].value);
+    }
+    assert_int_equal(dig_whitened_digs_make(soil, scatter, 2, dig, all, truth.number, &batch),
+                     DIG_OK);
+    dig_hypothesis_fit(&batch, &truth.hypothesis, truth.number, DIG_FIT_THOROUGH, &fitted);
+    dig_posterior_intervals(&batch, 1, &fitted, NULL);
+    print_message("a rock of 22 mm: %.1f (%.1f to %.1f)\n", 35 * fitted.number[DIG_AT_U(0)],
+                  35 * fitted.low[DIG_AT_U(0)], 35 * fitted.high[DIG_AT_U(0)]);
+    assert_true(fitted.low[DIG_AT_U(0)] > 0.5 * u_of(&rock));
+}
+
 TESTS_WITH(setup, teardown)
