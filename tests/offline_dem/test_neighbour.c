@@ -29,7 +29,7 @@ static struct scatter make_scatter(const uint64_t seed)
         y[i]          = dig_random_between(&random, -0.03, 0.03);
         z[i]          = dig_random_between(&random, 0.0, 0.04);
         r[i]          = dig_random_next(&random) % 2 == 0 ? 0.003 : 0.005;
-        s.margin_m[i] = i % 50 == 0 ? dig_random_between(&random, 0.002, 0.01) : 0.0006;
+        s.margin_m[i] = i % 50 == 0 ? dig_random_between(&random, 0.002, 0.02) : 0.0006;
     }
     x[7] = 12.0;
     assert_int_equal(dem_create_grains(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);
