@@ -72,6 +72,10 @@ for name in moment lossy; do
     "$BIN/digloop" trace "$table" "$work/$name" --json "$work/$name.json" >/dev/null 2>"$work/err"
     check "digs of which not all was measured are traced: $name" eval '[ $? = 0 ] && grep -q "\"verdict\": \[\"none\"\]" "$work/$name.json"'
 done
+cp "$work/moment/moment_a.csv" "$work/kept.csv"
+check "a result does not take the place of a recording" refuses "moment_a.csv: to be written, and read by the campaign" -- \
+    "$BIN/digloop" trace "$table" "$work/moment" --json "$work/moment/moment_a.csv"
+check "which stays as it was" cmp -s "$work/moment/moment_a.csv" "$work/kept.csv"
 friction() { tr -d ' \n' <"$1" | sed -nE 's/.*"friction":\{"value":([-0-9.e+]+).*/\1/p'; }
 check "lost samples hardly change the gravel" within "$(friction "$work/lossy.json")" \
     "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f - .01 }')" "$(awk -v f="$(friction "$work/n.json")" 'BEGIN { print f + .01 }')"

@@ -2,6 +2,7 @@
 
 #include "closed_loop/recordings/observe.h"
 #include "core/name.h"
+#include "core/regular.h"
 #include "core/text.h"
 #include "files/campaign_yaml.h"
 #include "files/machine_yaml.h"
@@ -218,6 +219,28 @@ static enum dig_status load(const struct digloop_job *const  job,
     return status;
 }
 
+// A result may not take the place of what is read: the command's words alone were compared.
+static enum dig_status check_results(const struct digloop_options *const options,
+                                     const struct dig_campaign *const    from,
+                                     struct dig_error *const             error)
+{
+    const char *const result[] = { options->json_out, options->html, options->add };
+    for (size_t r = 0; r < sizeof result / sizeof result[0]; r++) {
+        bool read = result[r] != NULL && (dig_regular_same(result[r], from->scene) ||
+                                          dig_regular_same(result[r], from->machine));
+        for (size_t i = 0; result[r] != NULL && i < from->recordings; i++) {
+            read = read || dig_regular_same(result[r], from->recording[i].file);
+        }
+        if (read) {
+            return dig_error_set(error, DIG_EINVAL,
+                                 "%s: to be written, and read by the campaign; expected another "
+                                 "name",
+                                 result[r]);
+        }
+    }
+    return DIG_OK;
+}
+
 enum dig_status digloop_campaign_load(const struct digloop_job *const job,
                                       struct digloop_campaign *const  campaign,
                                       struct dig_error *const         error)
@@ -229,6 +252,9 @@ enum dig_status digloop_campaign_load(const struct digloop_job *const job,
         return dig_error_set(error, DIG_ENOMEM, "out of memory");
     }
     enum dig_status status = dig_campaign_read(job->options->recording[0], from, error);
+    if (status == DIG_OK) {
+        status = check_results(job->options, from, error);
+    }
     if (status == DIG_OK) {
         status = load(job, from, &loaded, error);
     }
