@@ -148,7 +148,9 @@ other_scene stiff "material.young_Pa"
 scene_is elsewhere 's/start_pin_m: \[0.09,/start_pin_m: [0.11,/'
 other_scene elsewhere 'trajectory "actual"'
 sed 's/bucket_width_m: .*/bucket_width_m: 1.0/' config/machines/zx200_trench.yaml >"$work/wide.yaml"
-campaign wide rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
+recording=$PWD/tests/data/formats/machine_recording.csv
+cp "$recording" "$work/again.csv"
+campaign wide rig "$recording" simpleA identify "$work/again.csv" actual fit
 echo "machine: ../wide.yaml" >>"$work/wide/campaign.yaml"
 check "a machine whose bucket is of another shape is refused" refuses "wide.yaml does not fit" "fit $table: scene \"rig\"" -- traced "$work/wide"
 
@@ -201,7 +203,7 @@ check "a missing recording is named" refuses "file: $work/gone/none.csv: No such
 sed -i 1d "$work/gone/campaign.yaml"
 echo "scene: none.yaml" >>"$work/gone/campaign.yaml"
 check "so is a missing scene" refuses "gone/none.yaml: no such scene file" -- traced "$work/gone"
-campaign machine rig "$PWD/tests/data/formats/machine_recording.csv" simpleA identify "$PWD/tests/data/formats/machine_recording.csv" actual fit
+campaign machine rig "$recording" simpleA identify "$work/again.csv" actual fit
 check "machine recordings need a machine" refuses "expected campaign.yaml to name a machine" -- traced "$work/machine"
 sed 's/^scene/machine: none.yaml\n&/' "$work/machine/campaign.yaml" >"$work/m" && mv "$work/m" "$work/machine/campaign.yaml"
 check "a machine that is not there is named" refuses "machine: $work/machine/none.yaml: No such file" "campaign.yaml:" -- traced "$work/machine"
