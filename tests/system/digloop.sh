@@ -122,6 +122,11 @@ check "a model takes off a recording what it says of the machine" \
 doubts() { "$BIN/digloop" identify "$table" "$work/heavy.csv" --machine "$machine" "$@" 2>"$work/err" | grep -q "perhaps it is the machine"; }
 check "outside the table it may be the machine" doubts
 check "not where a model says how that is" eval '! doubts --model "$work/model.json"'
+sed 's/"friction": 0/"friction": 99/' "$work/force.json" >"$work/wild.json"
+check "an identity beyond the table is refused" refuses "wild.json: friction 99" "expected 0.3 to 0.9" -- \
+    "$BIN/digloop" predict "$table" --identified "$work/wild.json" --trajectory actual
+check "a dig that is named twice is refused" refuses "named twice" -- \
+    "$BIN/digloop" identify "$table" "$reference"__simpleA.csv "$PWD/$reference"__simpleA.csv
 check "a model of another scene is refused" refuses "elsewhere.json" "scene_hash" -- \
     "$BIN/digloop" identify "$table" "$work/run.csv" --machine "$machine" --model "$work/elsewhere.json"
 check "digs along two trajectories are not pooled" refuses "different trajectories" "--trajectory" -- \

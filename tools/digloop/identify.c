@@ -1,3 +1,4 @@
+#include "core/regular.h"
 #include "core/units.h"
 #include "estimator/match/match.h"
 #include "files/identity_json.h"
@@ -31,9 +32,16 @@ static enum dig_status add(struct dig_observed_digs *const       pool,
 static enum dig_status collect(const struct digloop_job *const job, const int trajectory,
                                struct dig_observed_digs *const pool, struct dig_error *const error)
 {
-    enum dig_status status = DIG_OK;
+    enum dig_status          status    = DIG_OK;
+    const char *const *const recording = job->options->recording;
     for (int i = 0; i < job->options->recordings && status == DIG_OK; i++) {
         struct dig_observed_digs digs = { .digs = 0 };
+        for (int k = 0; k < i; k++) { // a bed that counts twice would be known too well
+            if (dig_regular_same(recording[i], recording[k])) {
+                return dig_error_set(error, DIG_EINVAL, "%s: named twice, expected a dig once",
+                                     recording[i]);
+            }
+        }
         status = digloop_read_digs(job, job->options->recording[i], trajectory, &digs, error);
         if (status == DIG_OK) {
             status = add(pool, &digs, error);

@@ -283,6 +283,28 @@ static enum dig_status predict(const struct digloop_job *const job, const int t,
                                             dig_status_str(status));
 }
 
+// An identity is of a table's gravel: between its least and its greatest.
+static enum dig_status check_inside(const struct digloop_job *const  job,
+                                    const struct dig_identity *const id,
+                                    struct dig_error *const          error)
+{
+    for (int a = 0; a < DIG_AXES; a++) {
+        const double value = id->match.gravel.value[a];
+        double       least = INFINITY;
+        double       most  = -INFINITY;
+        for (size_t e = 0; e < job->set->entries; e++) {
+            least = fmin(least, job->set->gravel[e].value[a]);
+            most  = fmax(most, job->set->gravel[e].value[a]);
+        }
+        if (!(value >= least * (1.0 - 1e-9) && value <= most * (1.0 + 1e-9))) {
+            return dig_error_set(error, DIG_EINVAL, "%s: %s %g, expected %g to %g, which %s holds",
+                                 job->options->identified, dig_axis_name((enum dig_axis)a), value,
+                                 least, most, job->options->table);
+        }
+    }
+    return DIG_OK;
+}
+
 static enum dig_status read_identity(const struct digloop_job *const job,
                                      struct dig_identity *const id, struct dig_error *const error)
 {
@@ -295,7 +317,7 @@ static enum dig_status read_identity(const struct digloop_job *const job,
                              job->options->identified, id->scene_hash, job->options->table,
                              job->set->scene_hash);
     }
-    return status;
+    return status == DIG_OK ? check_inside(job, id, error) : status;
 }
 
 enum dig_status digloop_predict(const struct digloop_job *const job, struct dig_error *const error)
