@@ -32,8 +32,8 @@ static enum dig_status add(struct dig_observed_digs *const       pool,
 static enum dig_status collect(const struct digloop_job *const job, const int trajectory,
                                struct dig_observed_digs *const pool, struct dig_error *const error)
 {
-    enum dig_status          status    = DIG_OK;
-    const char *const *const recording = job->options->recording;
+    enum dig_status    status    = DIG_OK;
+    char *const *const recording = job->options->recording;
     for (int i = 0; i < job->options->recordings && status == DIG_OK; i++) {
         struct dig_observed_digs digs = { .digs = 0 };
         for (int k = 0; k < i; k++) { // a bed that counts twice would be known too well
