@@ -42,26 +42,33 @@ static bool is_dead(const struct chamber *const c)
     return c->readings > 2 && !(c->most > c->least);
 }
 
+static enum dig_status check_relief(const struct chamber *const c, const size_t signal,
+                                    struct dig_error *const error)
+{
+    return (double)c->beyond > spikes * (double)c->readings
+               ? dig_error_set(error, DIG_EINVAL,
+                               "%s reaches %.3g times what opens its relief valve, expected Pa",
+                               dig_signal_name((enum dig_signal)signal), c->most)
+               : DIG_OK;
+}
+
 static enum dig_status check_drive(const struct dig_machine_recording *const recording,
-                                   const size_t head, const double relief_Pa, double *const most,
+                                   const size_t signal, const double relief_Pa, double *const most,
                                    struct dig_error *const error)
 {
-    struct chamber of[2];
-    for (size_t side = 0; side < 2; side++) {
-        of[side] = read(recording, head + side, relief_Pa);
-        *most    = fmax(*most, of[side].most);
-        if ((double)of[side].beyond > spikes * (double)of[side].readings) {
-            return dig_error_set(error, DIG_EINVAL,
-                                 "%s reaches %.3g times what opens its relief valve, expected Pa",
-                                 dig_signal_name((enum dig_signal)(head + side)), of[side].most);
-        }
+    const struct chamber head   = read(recording, signal, relief_Pa);
+    const struct chamber rod    = read(recording, signal + 1, relief_Pa);
+    enum dig_status      status = check_relief(&head, signal, error);
+    if (status == DIG_OK) {
+        status = check_relief(&rod, signal + 1, error);
     }
-    return is_dead(&of[0]) && is_dead(&of[1])
+    *most = fmax(*most, fmax(head.most, rod.most));
+    return status == DIG_OK && is_dead(&head) && is_dead(&rod)
                ? dig_error_set(error, DIG_EINVAL,
                                "%s and %s never change, expected what a sensor reads",
-                               dig_signal_name((enum dig_signal)head),
-                               dig_signal_name((enum dig_signal)(head + 1)))
-               : DIG_OK;
+                               dig_signal_name((enum dig_signal)signal),
+                               dig_signal_name((enum dig_signal)(signal + 1)))
+               : status;
 }
 
 enum dig_status dig_pressure_check(const struct dig_machine *const           machine,

@@ -129,7 +129,7 @@ INLINED void gather_walls_single(const struct single_contacts *const contacts,
         }
     }
     for (size_t c = contacts->count; c < round_up(contacts->count, LANES_SINGLE); c++) {
-        block->normal[3][c] = -FAR_m;
+        block->normal[3][c] = -(float)FAR_m;
     }
 }
 
