@@ -38,8 +38,9 @@ static enum dig_status collect(const struct digloop_job *const job, const int tr
         struct dig_observed_digs digs = { .digs = 0 };
         for (int k = 0; k < i; k++) { // a bed that counts twice would be known too well
             if (dig_regular_same(recording[i], recording[k])) {
-                return dig_error_set(error, DIG_EINVAL, "%s: named twice, expected a dig once",
-                                     recording[i]);
+                (void)dig_error_set(error, DIG_EINVAL, "%s: named twice, expected a dig once",
+                                    recording[i]);
+                return DIG_EINVAL;
             }
         }
         status = digloop_read_digs(job, job->options->recording[i], trajectory, &digs, error);
