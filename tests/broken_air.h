@@ -8,7 +8,9 @@
 #include "closed_loop/check/machine_check.h"
 #include "core/recording.h"
 #include "files/machine_yaml.h"
+#include "tools/rig/motion/mechanism.h"
 #include "tools/rig/motion/track.h"
+#include "tools/rig/motion/work.h"
 #include "tools/rig/sensors.h"
 
 #include <math.h>
@@ -135,6 +137,35 @@ static inline bool air_move(const char *const name, struct dig_machine *const ma
     (void)snprintf(path, sizeof path, "config/machines/%s.yaml", name);
     return dig_machine_read(path, machine, error) == DIG_OK &&
            dig_rig_track_build_air(machine, &how, track, error) == DIG_OK;
+}
+
+/// Gives the moved machine seals that rub with a share of the largest push of their drive where its
+/// rod moves.
+static inline void air_rub(const struct dig_machine *const machine,
+                           struct dig_rig_track *const track, const double share)
+{
+    static const double still_mps        = 0.001; // slower, a part of it
+    double              at_m[DIG_JOINTS] = { 0.0 };
+    for (size_t i = 0; i < track->rows; i++) {
+        struct dig_rig_row *const row = &track->row[i];
+        struct dig_rig_pushes     pushes;
+        for (int j = 0; j < DIG_JOINTS; j++) {
+            const struct dig_cylinder *const c = &machine->cylinder[j];
+
+            const double head_m2  = 0.25 * 3.141592653589793 * c->bore_m * c->bore_m;
+            const double rod_m2   = head_m2 - 0.25 * 3.141592653589793 * c->rod_m * c->rod_m;
+            const double before_m = at_m[j];
+            if (dig_rig_cylinder_m(machine, (enum dig_joint)j, row->joints.rad[j], &at_m[j]) !=
+                DIG_OK) {
+                abort();
+            }
+            const double mps = i > 0 ? (at_m[j] - before_m) / track->step_s : 0.0;
+            pushes.N[j]      = c->count *
+                          (row->pressures.head_Pa[j] * head_m2 - row->pressures.rod_Pa[j] * rod_m2 +
+                           share * c->relief_Pa * head_m2 * fmin(fmax(mps / still_mps, -1.0), 1.0));
+        }
+        dig_rig_work_pressures(machine, &pushes, &row->pressures);
+    }
 }
 
 static inline void air_swap(struct dig_sample *const sample, const int a, const int b)

@@ -1,5 +1,6 @@
 #include "closed_loop/check/cause_columns.h"
 
+#include "closed_loop/check/drive_misfit.h"
 #include "core/units.h"
 
 #include <assert.h>
@@ -12,8 +13,7 @@ static const double zero_rad    = 0.5 * DIG_RAD_PER_DEG;
 static const double span_share  = 0.01;
 static const double class_share = 0.005;
 static const double late_s      = 0.01;
-// A seal rubs with a hundredth of what its cylinder can push; an inertia is known to a fifth.
-static const double seal_share    = 0.01;
+// An inertia is known to a fifth.
 static const double inertia_share = 0.2;
 
 // 1 sigma of a cause that is wrong.
@@ -77,11 +77,8 @@ struct dig_cause_column dig_cause_column_of(const struct dig_machine *const     
     } else if (column->effect == DIG_EFFECT_BUCKET_INERTIA) {
         tolerance = inertia_share * machine->link[DIG_JOINT_BUCKET].inertia_kgm2;
     } else if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < SEALS) {
-        const struct dig_cylinder *const cylinder = &machine->cylinder[drive[p / OF_A_SEAL]];
-
-        const double push_N =
-            cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
-        tolerance = p % OF_A_SEAL == COULOMB    ? seal_share * push_N
+        tolerance = p % OF_A_SEAL == COULOMB
+                        ? dig_drive_seal_N(&machine->cylinder[drive[p / OF_A_SEAL]])
                     : p % OF_A_SEAL == STRIBECK ? 0.0
                                                 : column->scale;
     }

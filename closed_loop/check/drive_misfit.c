@@ -1,6 +1,7 @@
 #include "closed_loop/check/drive_misfit.h"
 
 #include "core/linkage.h"
+#include "estimator/wrench/correction.h"
 #include "estimator/wrench/dynamics.h"
 #include "estimator/wrench/statics.h"
 
@@ -16,13 +17,22 @@ static const double offset_Pa  = 2e6;
 static const double load_share = 0.25;
 static const double most_share = 0.5;
 
+// A seal rubs with a hundredth of what its cylinder can push.
+static const double seal_share = 0.01;
+
 static const double beyond_rad = 3.0 * DIG_RAD_PER_DEG; // of a joint's range
+
+double dig_drive_seal_N(const struct dig_cylinder *const cylinder)
+{
+    assert(cylinder != NULL);
+    return seal_share * cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
+}
 
 void dig_drive_loads(const struct dig_machine *const machine,
                      const struct dig_reading *const reading, const size_t n,
-                     const struct dig_air_point at[], double load_N[])
+                     const struct dig_air_point at[], struct dig_drive_load load[])
 {
-    assert(machine != NULL && reading != NULL && at != NULL && load_N != NULL);
+    assert(machine != NULL && reading != NULL && at != NULL && load != NULL);
     for (size_t k = 0; k < n; k++) {
         struct dig_rates rates = at[k].rates;
         double           rad[DIG_JOINTS];
@@ -43,25 +53,32 @@ void dig_drive_loads(const struct dig_machine *const machine,
             const bool                   stands =
                 rad[j] > link->min_rad - beyond_rad && rad[j] < link->max_rad + beyond_rad &&
                 dig_lever_solve(machine, (enum dig_joint)j, rad[j], &lever) == DIG_OK;
-            load_N[n * j + k] = stands ? -mass_Nm[j] / lever.arm_m : (double)NAN;
+            load[n * j + k] = (struct dig_drive_load){
+                .load_N = stands ? -mass_Nm[j] / lever.arm_m : (double)NAN,
+                .rubs   = stands
+                              ? tanh(lever.arm_m * rates.velocity_radps[j] / DIG_FRICTION_STILL_mps)
+                              : 0.0,
+            };
         }
     }
 }
 
-// Sums over instants of a load and of the push of one pair of chambers.
+// Sums over instants of a load, of the direction of friction and of the push of one pair of
+// chambers.
 struct sums {
-    double n, l, ll, p, pp, lp;
+    double n, l, ll, p, pp, lp, t, tt, lt, pt;
     double chambers; // of the squares of what either chamber pushes
 };
 
 static struct sums add_up(const struct dig_drive_read *const read, const size_t n,
-                          const struct dig_air_point at[], const double load_N[])
+                          const struct dig_air_point at[], const struct dig_drive_load load[])
 {
     const double head_m2 = read->cylinder->count * dig_cylinder_head_m2(read->cylinder);
     const double rod_m2  = read->cylinder->count * dig_cylinder_rod_m2(read->cylinder);
     struct sums  sums    = { .n = 0.0 };
     for (size_t k = 0; k < n; k++) {
-        const double l = load_N[k];
+        const double l = load[k].load_N;
+        const double t = load[k].rubs;
         if (isfinite(l)) {
             const double head_N = head_m2 * at[k].sample.value[read->head];
             const double rod_N  = rod_m2 * at[k].sample.value[read->rod];
@@ -73,52 +90,66 @@ static struct sums add_up(const struct dig_drive_read *const read, const size_t 
             sums.p += p;
             sums.pp += p * p;
             sums.lp += l * p;
+            sums.t += t;
+            sums.tt += t * t;
+            sums.lt += l * t;
+            sums.pt += p * t;
         }
     }
     return sums;
 }
 
-// Of e = push - load, less offset + share * load, both with normal priors, the share within its
-// bounds. What may be left is a share of the push and some noise of its chambers: of what is read,
-// whatever the factor.
+// Of e = push - load, less offset + share * load + friction, with normal priors, the share within
+// its bounds and friction against the motion. What may be left is a share of the push and some
+// noise of its chambers: of what is read, whatever the factor.
 static double misfit(const struct dig_cylinder *const cylinder, const struct sums *const sums,
                      const double instants, const double poses, const double factor)
 {
+    enum { ROUNDS = 8 };
     const double each     = poses / instants; // poses an instant
     const double nothing  = 1.0 / (allowed_share * allowed_share);
     const double missing  = (instants - sums->n) * each * nothing;
     const double offset_N = cylinder->count * dig_cylinder_head_m2(cylinder) * offset_Pa;
+    const double seal_N   = dig_drive_seal_N(cylinder);
     if (!(sums->n > 0.0)) {
         return missing;
     }
     const double p  = factor * sums->p;
     const double pp = factor * factor * sums->pp;
     const double lp = factor * sums->lp;
+    const double pt = factor * sums->pt;
     const double read_N2 =
         allowed_share * allowed_share * sums->pp + noise_share * noise_share * sums->chambers;
     const double w = each * sums->n / fmax(factor * factor * read_N2, 1e-9);
 
+    // Each with its own best offset.
     const double e  = p - sums->l;
-    const double el = lp - sums->ll;
-    const double ee = pp - 2.0 * lp + sums->ll;
-    // The share that is best with its own best offset.
     const double oo = w * sums->n + 1.0 / (offset_N * offset_N);
-    const double os = w * sums->l;
-    const double ss = w * sums->ll + 1.0 / (load_share * load_share);
-    const double share =
-        fmin(fmax((w * el - os * w * e / oo) / (ss - os * os / oo), -most_share), most_share);
-    const double offset = (w * e - os * share) / oo;
-    const double chi2   = w * ee - 2.0 * offset * w * e - 2.0 * share * w * el +
-                        oo * offset * offset + 2.0 * os * offset * share + ss * share * share;
+    const double ee = w * (pp - 2.0 * lp + sums->ll) - w * e * w * e / oo;
+    const double el = w * (lp - sums->ll) - w * e * w * sums->l / oo;
+    const double et = w * (pt - sums->lt) - w * e * w * sums->t / oo;
+    const double lt = w * sums->lt - w * sums->l * w * sums->t / oo;
+    const double ll =
+        w * sums->ll - w * sums->l * w * sums->l / oo + 1.0 / (load_share * load_share);
+    const double tt     = w * sums->tt - w * sums->t * w * sums->t / oo + 1.0 / (seal_N * seal_N);
+    double       share  = 0.0;
+    double       rubs_N = 0.0;
+    for (int round = 0; round < ROUNDS; round++) {
+        share  = fmin(fmax((el - lt * rubs_N) / ll, -most_share), most_share);
+        rubs_N = fmax((et - lt * share) / tt, 0.0);
+    }
+    const double chi2 = ee - 2.0 * share * el - 2.0 * rubs_N * et + ll * share * share +
+                        2.0 * lt * share * rubs_N + tt * rubs_N * rubs_N;
     return 0.5 * (fmax(chi2, 0.0) + missing);
 }
 
-void dig_drive_misfits(const struct dig_drive_read *const read, const size_t n,
-                       const struct dig_air_point at[], const double load_N[], const double poses,
-                       const size_t factors, const double factor[], double misfits[])
+void dig_drive_misfits(const struct dig_drive_read *read, const size_t n,
+                       const struct dig_air_point at[], const struct dig_drive_load load[],
+                       const double poses, const size_t factors, const double factor[],
+                       double misfits[])
 {
-    assert(read != NULL && at != NULL && load_N != NULL && factor != NULL && misfits != NULL);
-    const struct sums sums = add_up(read, n, at, load_N);
+    assert(read != NULL && at != NULL && load != NULL && factor != NULL && misfits != NULL);
+    const struct sums sums = add_up(read, n, at, load);
     for (size_t f = 0; f < factors; f++) {
         misfits[f] = misfit(read->cylinder, &sums, (double)n, poses, factor[f]);
     }

@@ -2,8 +2,8 @@
 // drive bears in free air.
 //
 // Coarse on purpose. A file may be wrong by some per cent and a sensor by some bar without anything
-// being mixed up. So the residual counts relative to the load, after a constant force and a factor
-// of the load, both within bounds, are fitted.
+// being mixed up. So the residual counts relative to the load, after a constant force, a factor of
+// the load and dry friction, all within bounds, are fitted.
 
 #ifndef DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
 #define DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H
@@ -14,10 +14,21 @@
 
 #include <stddef.h>
 
-/// What each drive would have to push at n instants while their angles, which are in radians, are
-/// read so: load_N[n * joint + instant]; NaN where the joint cannot stand like that.
+/// 1 sigma of the dry friction of a drive's seals, which no one has to mend.
+double dig_drive_seal_N(const struct dig_cylinder *cylinder);
+
+/// What a drive would have to push at an instant (NaN where its joint cannot stand like that), and
+/// the share of its dry friction that it would have to overcome: 1 where the rod comes out, -1
+/// where it goes in.
+struct dig_drive_load {
+    double load_N;
+    double rubs;
+};
+
+/// Of each drive at n instants while their angles, which are in radians, are read so:
+/// load[n * joint + instant].
 void dig_drive_loads(const struct dig_machine *machine, const struct dig_reading *reading, size_t n,
-                     const struct dig_air_point at[], double load_N[]);
+                     const struct dig_air_point at[], struct dig_drive_load load[]);
 
 /// A drive, and the signals that its chambers are read from.
 struct dig_drive_read {
@@ -29,7 +40,7 @@ struct dig_drive_read {
 /// each such factor, by the load at each of them. poses: so many of the instants count as seen each
 /// for itself.
 void dig_drive_misfits(const struct dig_drive_read *read, size_t n, const struct dig_air_point at[],
-                       const double load_N[], double poses, size_t factors, const double factor[],
-                       double misfits[]);
+                       const struct dig_drive_load load[], double poses, size_t factors,
+                       const double factor[], double misfits[]);
 
 #endif // DIG_CLOSED_LOOP_CHECK_DRIVE_MISFIT_H

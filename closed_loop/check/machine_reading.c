@@ -219,8 +219,8 @@ static void try_pressures(struct search *const s, struct dig_reading reading, co
 }
 
 // What every answer of a drive leaves. A drive that is not recorded says nothing, for or against.
-static void fill_costs(const struct search *const s, const double load_N[], const int joint,
-                       const int drive, double cost[ANSWERS])
+static void fill_costs(const struct search *const s, const struct dig_drive_load load[],
+                       const int joint, const int drive, double cost[ANSWERS])
 {
     for (size_t a = 0; a < ANSWERS; a++) {
         cost[a] = joint == drive ? 0.0 : (double)INFINITY;
@@ -231,7 +231,7 @@ static void fill_costs(const struct search *const s, const double load_N[], cons
             .head     = chamber_signal((enum dig_joint)drive, w),
             .rod      = chamber_signal((enum dig_joint)drive, 1U - w),
         };
-        dig_drive_misfits(&read, s->n, s->at, &load_N[s->n * (size_t)joint], s->poses, FACTORS,
+        dig_drive_misfits(&read, s->n, s->at, &load[s->n * (size_t)joint], s->poses, FACTORS,
                           factors, &cost[w * FACTORS]);
     }
 }
@@ -244,12 +244,12 @@ static void try_angles(struct search *const s, const struct dig_reading *const a
         before += angles->turned[j] ? each_change : 0.0;
         before += fabs(angles->zero_rad[j]) > 0.0 ? each_change : 0.0;
     }
-    double load_N[DIG_JOINTS * INSTANTS];
-    costs  cost;
-    dig_drive_loads(s->machine, angles, s->n, s->at, load_N);
+    struct dig_drive_load load[DIG_JOINTS * INSTANTS];
+    costs                 cost;
+    dig_drive_loads(s->machine, angles, s->n, s->at, load);
     for (int j = 0; j < DIG_JOINTS; j++) {
         for (int d = 0; d < DIG_JOINTS; d++) {
-            fill_costs(s, load_N, j, d, cost[j][d]);
+            fill_costs(s, load, j, d, cost[j][d]);
         }
     }
     try_pressures(s, *angles, before, cost);
