@@ -96,7 +96,7 @@ TEST(a_machine_that_leans_says_so_and_leaves_the_gravel)
                   result.before.value, result.after.value, oracle.after.value);
     assert_int_equal(result.effects, 1);
     assert_int_equal(result.effect[0].effect, DIG_EFFECT_UNLISTED);
-    assert_string_equal(result.unlisted->depends_on, "the machine's pitch");
+    assert_string_equal(result.unlisted.depends_on, "the machine's pitch");
     assert_non_null(strstr(result.advice, "pitched by"));
     assert_true(result.significant && result.after.value < 1.15 * oracle.after.value);
     for (size_t a = 0; a < DIG_AXES; a++) {

@@ -99,22 +99,23 @@ TEST(a_second_scale_stands_at_the_right)
 
 TEST(what_is_counted_has_no_marks_between)
 {
-    static const double three[] = { 1.0, 3.0 };
-    struct dig_plot     plot    = { .title     = "",
-                                    .x_label   = "x",
-                                    .y_label   = "digs",
-                                    .from_zero = true,
-                                    .height    = 370,
-                                    .series    = 1,
-                                    .s = { { NULL, DIG_PLOT_POINTS, 0, 2, three, three, NULL } } };
-    struct dig_error    error   = { "" };
+    static const double   three[] = { 1.0, 3.0 };
+    struct dig_plot       plot    = { .title     = "",
+                                      .x_label   = "x",
+                                      .y_label   = "digs",
+                                      .from_zero = true,
+                                      .height    = 370,
+                                      .series    = 1,
+                                      .s = { { NULL, DIG_PLOT_POINTS, 0, 2, three, three, NULL } } };
+    struct dig_conditions c       = { .error = NULL };
     for (int i = 0; i < 2; i++) {
         char       *svg  = NULL;
         size_t      size = 0;
         FILE *const to   = open_memstream(&svg, &size);
         plot.counts      = i == 1;
         plot.x_to        = 40.0; // its own marks are whole
-        assert_int_equal(dig_plot_figure(&plot, to, &error), DIG_OK);
+        dig_plot_figure(&plot, to, &c);
+        assert_int_equal(c.status, DIG_OK);
         (void)fclose(to);
         assert_int_equal(strstr(svg, ".5</text>") == NULL, i);
         assert_non_null(strstr(svg, " 3</text>"));
