@@ -69,12 +69,23 @@ static void take_recording(const char *const yaml, const size_t i,
     r->pass = r->pass == 0 ? 1 : r->pass;
 }
 
-// A dig is recorded once: named twice it would count twice, or judge what it was fitted to.
+static bool is_log(const char *const path)
+{
+    const size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".lcm") == 0;
+}
+
+// A dig is recorded once: named twice it would count twice, or judge what it was fitted to. A log
+// holds many.
 static void require_once(const struct dig_campaign *const campaign, const size_t i,
                          struct dig_conditions *const c)
 {
+    const struct dig_campaign_recording *const r = &campaign->recording[i];
     for (size_t k = 0; k < i; k++) {
-        dig_require(c, strcmp(campaign->recording[k].file, campaign->recording[i].file) != 0,
+        const struct dig_campaign_recording *const other = &campaign->recording[k];
+        dig_require(c,
+                    strcmp(other->file, r->file) != 0 || is_log(r->file) ||
+                        strcmp(other->trajectory, r->trajectory) != 0,
                     "recordings[%zu].file: that of recordings[%zu], expected a dig of its own", i,
                     k);
     }
