@@ -1,6 +1,7 @@
 #include "files/campaign_yaml.h"
 
 #include "core/name.h"
+#include "files/lcm/lcm_log.h"
 #include "files/yaml/yaml.h"
 #include "files/yaml/yaml_schema.h"
 
@@ -69,12 +70,6 @@ static void take_recording(const char *const yaml, const size_t i,
     r->pass = r->pass == 0 ? 1 : r->pass;
 }
 
-static bool is_log(const char *const path)
-{
-    const size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".lcm") == 0;
-}
-
 // A dig is recorded once: named twice it would count twice, or judge what it was fitted to. A log
 // holds many.
 static void require_once(const struct dig_campaign *const campaign, const size_t i,
@@ -84,8 +79,8 @@ static void require_once(const struct dig_campaign *const campaign, const size_t
     for (size_t k = 0; k < i; k++) {
         const struct dig_campaign_recording *const other = &campaign->recording[k];
         dig_require(c,
-                    strcmp(other->file, r->file) != 0 || is_log(r->file) ||
-                        strcmp(other->trajectory, r->trajectory) != 0,
+                    strcmp(other->file, r->file) != 0 ||
+                        strcmp(other->trajectory, r->trajectory) != 0 || dig_lcm_log_is(r->file),
                     "recordings[%zu].file: that of recordings[%zu], expected a dig of its own", i,
                     k);
     }

@@ -34,8 +34,8 @@ struct dig_campaign {
 /// True when path is a folder: a campaign is one, a recording is a file.
 bool dig_campaign_is(const char *path);
 
-/// Reads FOLDER/campaign.yaml. *error names file, line, key and what was expected; the files it
-/// lists are not opened. Writes on success only.
+/// Reads FOLDER/campaign.yaml. *error names file, line, key and what was expected; of the files it
+/// lists one that is named twice is opened, to see whether it is a log. Writes on success only.
 DIG_MUST_CHECK enum dig_status dig_campaign_read(const char *folder, struct dig_campaign *campaign,
                                                  struct dig_error *error);
 
