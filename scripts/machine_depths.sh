@@ -2,6 +2,7 @@
 # How right a machine is, which does not know where the ground lies: the simple digs of LIGGGHTS in the open, true depth 1,
 # as a machine would record them. A line a dig: the depth told, how far off the actual dig of that bed is predicted, the
 # noise floor, by what the gravel was identified, and whether it was told to be outside; or what refused it.
+# AIR_PACE=3 moves the bucket so much more briskly before and after a dig.
 #   BIN=build/bin scripts/machine_depths.sh [TABLE.sqlite [SCENE.yaml [FOLDER...]]]
 set -eu
 bin=${BIN:-build/bin} table=${1:-tables/product.sqlite} scene=${2:-config/scenes/product.yaml}
@@ -18,7 +19,8 @@ for simple in "${@/%//*__simpleA.csv}"; do
     # shellcheck disable=SC2086 # a pattern
     for dig in $simple; do
         name=$(basename "${dig%__simpleA.csv}")
-        "$bin/digrig" record "$dig" --machine "$machine" --scene "$scene" -o "$work/machine.csv" -q
+        "$bin/digrig" record "$dig" --machine "$machine" --scene "$scene" -o "$work/machine.csv" -q \
+            --air-pace "${AIR_PACE:-1}"
         if ! "$bin/digloop" identify "$table" "$work/machine.csv" --machine "$machine" --trajectory simpleA \
             --json >"$work/id.json" 2>"$work/why"; then
             printf '%-40s %6s %6s %6s  refused: %s\n' "$name" - - - "$(sed -nE 's/.*(digs in it: [^;]*), expected.*/\1/p' "$work/why")"

@@ -220,53 +220,44 @@ static void expect_followed(const struct dig_machine_recording *const r)
     free(e);
 }
 
-TEST(a_pitched_machine_digs_level_ground_as_a_level_one_does)
+// Finds both digs of a machine pitched by so much as a level one's, and follows them. Frees r.
+static void expect_as_level(const double pitch_deg, struct dig_machine_recording *const r)
 {
     struct dig_machine_recording level = record();
     struct dig_observed_digs     as    = { .digs = 0 };
+    struct dig_observed_digs     digs  = { .digs = 0 };
     struct dig_error             error = { "" };
     assert_ok(dig_observe_machine(&machine, NULL, set, &level, &as, &error), error);
-    for (int way = -1; way <= 1; way += 2) {
-        struct dig_machine_recording r    = record();
-        struct dig_observed_digs     digs = { .digs = 0 };
-        stand_pitched(&machine, 3.0 * way * DIG_RAD_PER_DEG, &r);
-        assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
-        expect_both(&digs);
-        for (int d = 0; d < DIGS; d++) {
-            print_message("%d deg: %.4f off\n", 3 * way, apart_of(&digs.dig[d], &as.dig[d]));
-            assert_true(digs.dig[d].forces && as.dig[d].forces);
-            assert_true(apart_of(&digs.dig[d], &as.dig[d]) < 0.02);
-        }
-        expect_followed(&r);
-        dig_observed_digs_finish(&digs);
-        dig_machine_recording_finish(&r);
+    assert_ok(dig_observe_machine(&machine, NULL, set, r, &digs, &error), error);
+    expect_both(&digs);
+    for (int d = 0; d < DIGS; d++) {
+        print_message("%g deg: %.4f off\n", pitch_deg, apart_of(&digs.dig[d], &as.dig[d]));
+        assert_true(digs.dig[d].forces && as.dig[d].forces);
+        assert_true(apart_of(&digs.dig[d], &as.dig[d]) < 0.02);
     }
+    expect_followed(r);
+    dig_observed_digs_finish(&digs);
     dig_observed_digs_finish(&as);
+    dig_machine_recording_finish(r);
     dig_machine_recording_finish(&level);
+}
+
+TEST(a_pitched_machine_digs_level_ground_as_a_level_one_does)
+{
+    for (double pitch_deg = -3.0; pitch_deg <= 3.0; pitch_deg += 6.0) {
+        struct dig_machine_recording r = record();
+        stand_pitched(&machine, pitch_deg * DIG_RAD_PER_DEG, &r);
+        expect_as_level(pitch_deg, &r);
+    }
 }
 
 // Then the path lies along its trajectory in the machine's frame.
 TEST(a_machine_pitched_as_its_ground_digs_along_its_own_frame)
 {
-    struct dig_machine_recording level = record();
-    struct dig_observed_digs     as    = { .digs = 0 };
-    struct dig_error             error = { "" };
-    assert_ok(dig_observe_machine(&machine, NULL, set, &level, &as, &error), error);
-    for (int way = -1; way <= 1; way += 2) {
-        struct dig_machine_recording r    = record_along(&track, 3.0 * way * DIG_RAD_PER_DEG);
-        struct dig_observed_digs     digs = { .digs = 0 };
-        assert_ok(dig_observe_machine(&machine, NULL, set, &r, &digs, &error), error);
-        expect_both(&digs);
-        for (int d = 0; d < DIGS; d++) {
-            print_message("%d deg: %.4f off\n", 3 * way, apart_of(&digs.dig[d], &as.dig[d]));
-            assert_true(apart_of(&digs.dig[d], &as.dig[d]) < 0.02);
-        }
-        expect_followed(&r);
-        dig_observed_digs_finish(&digs);
-        dig_machine_recording_finish(&r);
+    for (double pitch_deg = -3.0; pitch_deg <= 3.0; pitch_deg += 6.0) {
+        struct dig_machine_recording r = record_along(&track, pitch_deg * DIG_RAD_PER_DEG);
+        expect_as_level(pitch_deg, &r);
     }
-    dig_observed_digs_finish(&as);
-    dig_machine_recording_finish(&level);
 }
 
 // Angles in steps of half a degree, or in steps and with noise: the path that they make is blurred,

@@ -121,7 +121,10 @@ check "a model takes off a recording what it says of the machine" \
     awk -v e="$errors" 'BEGIN { exit !(split(e, x, " ") == 3 && (x[1] - x[2]) ^ 2 < 0.02 ^ 2 && x[3] > x[2] + 0.04) }'
 doubts() { "$BIN/digloop" identify "$table" "$work/heavy.csv" --machine "$machine" "$@" 2>"$work/err" | grep -q "perhaps it is the machine"; }
 check "outside the table it may be the machine" doubts
-check "not where a model says how that is" eval '! doubts --model "$work/model.json"'
+sed 's/"value": 250, "low": 250, "high": 250/"value": 1, "low": 1, "high": 1/' "$work/model.json" >"$work/little.json"
+check "not where a model says how that is" eval '! doubts --model "$work/little.json"'
+check "though it lies outside by that, too" grep -q OUTSIDE <("$BIN/digloop" identify "$table" "$work/heavy.csv" --machine "$machine" \
+    --model "$work/little.json" 2>/dev/null)
 sed 's/"friction": 0/"friction": 99/' "$work/force.json" >"$work/wild.json"
 check "an identity beyond the table is refused" refuses "wild.json: friction 99" "expected 0.3 to 0.9" -- \
     "$BIN/digloop" predict "$table" --identified "$work/wild.json" --trajectory actual
