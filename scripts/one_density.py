@@ -11,8 +11,9 @@ import hashlib
 import os
 import shutil
 import sqlite3
-import subprocess
 import sys
+
+import table_seal
 
 
 def main(table, out, density_kgpm3):
@@ -28,16 +29,13 @@ def main(table, out, density_kgpm3):
     canonical = head + "\n".join(lines) + "\n"
     digest = hashlib.sha256(canonical.encode()).hexdigest()
     db.execute("UPDATE scene SET canonical = ?, hash = ?", (canonical, digest))
-    # The seals of the digs that stay are made anew.
-    db.execute("DROP TABLE seal")
+    db.execute("DELETE FROM seal")
     other = "ground IN (SELECT id FROM ground WHERE density_kgpm3 <> ?)"
     for rows in ("run", "entry"):
         db.execute(f"DELETE FROM {rows} WHERE {other}", (density_kgpm3,))
     db.execute("DELETE FROM ground WHERE density_kgpm3 <> ?", (density_kgpm3,))
-    db.execute("PRAGMA user_version = 3")
-    db.commit()
+    table_seal.seal(db)
     db.close()
-    subprocess.run([os.environ.get("BIN", "build/bin") + "/digtable", "seal", out], check=True)
 
 
 if __name__ == "__main__":

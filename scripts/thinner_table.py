@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+import table_seal
+
 
 def keep_values(db, axis, text):
     values = [float(v) for v in text.split(",")]
@@ -31,7 +33,7 @@ def main(table, out, packings, *kept_values):
         os.chmod(kept, 0o644)
         db = sqlite3.connect(kept)
         # merge makes the entries anew, of the runs that are left.
-        db.execute("DROP TABLE seal")
+        db.execute("DELETE FROM seal")
         db.execute("DELETE FROM run WHERE packing >= ?", (packings,))
         for axis, text in zip(("friction", "rolling"), kept_values):
             keep_values(db, axis, text)
@@ -39,8 +41,7 @@ def main(table, out, packings, *kept_values):
             "UPDATE entry SET packings = (SELECT count(*) FROM run"
             " WHERE run.ground = entry.ground AND run.trajectory = entry.trajectory)"
         )
-        db.execute("PRAGMA user_version = 3")
-        db.commit()
+        table_seal.seal(db)
         db.close()
         subprocess.run([os.environ.get("BIN", "build/bin") + "/digtable", "merge", out, kept], check=True)
 

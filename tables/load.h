@@ -12,7 +12,7 @@
 /// in set->approaches, or NULL there. The curves are smoothed with +-0.16 s of rig time, mapped to
 /// path progress, averaged over packings. Where density is a scale of the scene and one was dug,
 /// there are three (tables/density_scale.h). Allocates; free with dig_curve_set_destroy().
-/// DIG_ESCHEMA: a version this build does not know, both named. DIG_EINVAL: nothing was dug without
+/// DIG_ESCHEMA: another version, both named. DIG_EINVAL: nothing was dug without
 /// an effect.
 DIG_MUST_CHECK enum dig_status dig_table_load(const char *path, struct dig_curve_set **set,
                                               struct dig_error *error);

@@ -166,8 +166,7 @@ static enum dig_status merge_into(struct dig_store *const store, const size_t in
     }
     store->db = (struct dig_db){ .path = store->path, .error = error };
     dig_sql_open(&store->db, SQLITE_OPEN_READWRITE);
-    dig_schema_tables(&store->db, DIG_TABLE_VERSION);
-    dig_schema_number(&store->db);
+    dig_schema_tables(&store->db);
     return fill(store, inputs, input);
 }
 

@@ -158,20 +158,10 @@ void dig_entry_refresh(struct dig_store *const store, const sqlite3_int64 ground
     free(ensemble);
 }
 
-// The first run added to a table of an older version makes it one of today's.
-static void upgrade(struct dig_store *const store)
-{
-    if (store->head.version != DIG_TABLE_VERSION) {
-        dig_schema_upgrade(&store->db, store->head.version);
-        store->head.version = store->db.status == DIG_OK ? DIG_TABLE_VERSION : store->head.version;
-    }
-}
-
 enum dig_status dig_store_begin(struct dig_store *const store, struct dig_error *const error)
 {
     assert(store != NULL && store->lock_fd >= 0 && !store->gathers);
     struct dig_db *const db = dig_store_ask(store, error);
-    upgrade(store);
     dig_sql_run(db, "BEGIN IMMEDIATE");
     store->gathers = db->status == DIG_OK;
     return db->status;
@@ -192,7 +182,6 @@ static void put_run(struct dig_store *const store, const struct dig_run_origin *
                     const uint8_t *const bytes)
 {
     struct dig_db *const db = &store->db;
-    upgrade(store);
     dig_sql_run(db, store->gathers ? "SAVEPOINT run" : "BEGIN IMMEDIATE");
     if (db->status != DIG_OK) {
         return;

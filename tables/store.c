@@ -201,45 +201,6 @@ enum dig_status dig_store_create(const char *const path, const struct dig_scene 
     return DIG_OK;
 }
 
-static void seal(struct dig_store *const store)
-{
-    struct dig_db *const    db = &store->db;
-    struct dig_store_report report;
-    dig_sql_open(db, SQLITE_OPEN_READWRITE);
-    dig_schema_check(db, &store->head);
-    if (db->status != DIG_OK) {
-        return;
-    }
-    prepare_writing(db);
-    // What is damaged already must not be sealed so.
-    if (db->status == DIG_OK && dig_store_check(store, &report, db->error) == DIG_OK &&
-        store->head.version < DIG_TABLE_VERSION) {
-        dig_schema_upgrade(db, store->head.version);
-    }
-}
-
-enum dig_status dig_store_seal(const char *const path, bool *const was,
-                               struct dig_error *const error)
-{
-    assert(path != NULL && was != NULL);
-    if (access(path, F_OK) != 0) {
-        return dig_error_set(error, DIG_EIO, "%s: %s", path, strerror(errno));
-    }
-    struct dig_store *store  = NULL;
-    enum dig_status   status = make_store(path, &store, error);
-    if (store == NULL) {
-        return status;
-    }
-    (void)lock(store);
-    seal(store);
-    status = store->db.status;
-    if (status == DIG_OK) {
-        *was = store->head.version >= DIG_TABLE_VERSION;
-    }
-    dig_store_close(store);
-    return status;
-}
-
 void dig_store_close(struct dig_store *const store)
 {
     if (store != NULL) {

@@ -46,15 +46,10 @@ struct dig_run {
 };
 
 /// Opens path for writing, and makes it first where there is none. DIG_EINVAL when it holds another
-/// scene (both named) or is no table; DIG_ESCHEMA when its version is not known; DIG_EIO when
+/// scene (both named) or is no table; DIG_ESCHEMA when it is of another version; DIG_EIO when
 /// another process writes to it or the disk refuses. Nothing is left behind when a new table fails.
 DIG_MUST_CHECK enum dig_status dig_store_create(const char *path, const struct dig_scene *scene,
                                                 struct dig_store **store, struct dig_error *error);
-
-/// Makes a table of an older version one of today's, every entry sealed, after a check as
-/// dig_store_check() makes it; all or nothing. *was: it is sealed already, and was checked alone.
-/// Refuses what that and dig_store_create() refuse.
-DIG_MUST_CHECK enum dig_status dig_store_seal(const char *path, bool *was, struct dig_error *error);
 
 /// Opens an existing table to read its runs.
 DIG_MUST_CHECK enum dig_status dig_store_open(const char *path, struct dig_store **store,
@@ -71,11 +66,9 @@ void dig_store_forget(struct dig_store *store);
 const struct dig_trajectory *dig_store_trajectories(const struct dig_store *store, size_t *count);
 
 /// Stores one dig and refreshes its entry, both or neither. The recording's samples must be evenly
-/// spaced (within 1 % of the spacing). A table from before digs had an approach is brought to
-/// today's format first, and sealed. DIG_EINVAL for a recording that is not finite, not even, or
+/// spaced (within 1 % of the spacing). DIG_EINVAL for a recording that is not finite, not even, or
 /// for a run that is there already; for an effect core/effect.h does not name; for an approach out
-/// of range. A carried mass that
-/// is missing in one row is stored as not known in any.
+/// of range. A carried mass that is missing in one row is stored as not known in any.
 DIG_MUST_CHECK enum dig_status dig_store_put(struct dig_store            *store,
                                              const struct dig_run_origin *origin,
                                              const struct dig_recording  *recording,

@@ -8,6 +8,7 @@
 #include "tables/load.h"
 #include "tables/store.h"
 #include "tests/scratch.h"
+#include "tests/seal_all.h"
 
 #include <sqlite3.h>
 
@@ -170,12 +171,13 @@ static inline const char *fixture_copy(const char *const from, const char *const
     return scratch_path(to);
 }
 
-/// The same of a table of version 3, which has no seals: what they do not keep out.
-static inline const char *fixture_copy_bare(const char *const from, const char *const to,
-                                            const char *const sql)
+/// The same, sealed after it was changed: what seals do not keep out.
+static inline const char *fixture_copy_sealed(const char *const from, const char *const to,
+                                              const char *const sql)
 {
-    const char *const path = fixture_copy(from, to, "DROP TABLE seal; PRAGMA user_version = 3");
+    const char *const path = fixture_copy(from, to, "DELETE FROM seal");
     fixture_run_sql(to, sql);
+    seal_all(path);
     return path;
 }
 

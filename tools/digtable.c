@@ -12,11 +12,15 @@ static const struct {
     int (*run)(const struct dig_arguments *a);
     int least, most; // arguments that are no options
 } commands[] = {
-    { "dig", dig_cli_dig, 1, 1 },       { "generate", dig_cli_generate, 2, 2 },
-    { "submit", dig_cli_submit, 2, 2 }, { "status", dig_cli_status, 1, 1 },
-    { "list", dig_cli_list, 1, 1 },     { "check", dig_cli_check, 1, 1 },
-    { "show", dig_cli_show, 1, 2 },     { "import", dig_cli_import, 1, 1 },
-    { "seal", dig_cli_seal, 1, 1 },     { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX },
+    { "dig", dig_cli_dig, 1, 1 },
+    { "generate", dig_cli_generate, 2, 2 },
+    { "submit", dig_cli_submit, 2, 2 },
+    { "status", dig_cli_status, 1, 1 },
+    { "list", dig_cli_list, 1, 1 },
+    { "check", dig_cli_check, 1, 1 },
+    { "show", dig_cli_show, 1, 2 },
+    { "import", dig_cli_import, 1, 1 },
+    { "merge", dig_cli_merge, 2, DIG_POSITIONALS_MAX },
     { "export", dig_cli_export, 1, 1 },
 };
 

@@ -17,7 +17,7 @@ from pandas.api.types import is_numeric_dtype
 from .outside import check_regular, check_texts
 
 APPLICATION_ID = 0x44494754  # "DIGT"
-VERSIONS = (3, 4)
+VERSION = 4
 KEYS = ["friction", "rolling", "density_kgpm3", "trajectory", "effect", "magnitude", "depth", "attack_deg"]
 RUN_KEYS = ["packing", "seed", "engine", "version", "grains"]
 PLAIN = {"effect": "", "depth": 1.0, "attack_deg": 0.0}
@@ -136,8 +136,8 @@ def open_table(path: str | Path) -> Table:
     version = _query(db, name, "PRAGMA user_version").iat[0, 0]
     if identity != APPLICATION_ID:
         raise ValueError(f"{name}: not a table of digtable (application_id {identity}, expected {APPLICATION_ID})")
-    if version not in VERSIONS:
-        raise ValueError(f"{name}: table format {version}, expected 3 or 4 (`digtable seal` makes 2 into 4)")
+    if version != VERSION:
+        raise ValueError(f"{name}: table format {version}, expected {VERSION} (`digtable generate` makes it anew)")
     # Their types are what SQLite made of the schema, not what its text looks like.
     foreign = "SELECT 1 FROM pragma_table_list WHERE schema = 'main' AND type <> 'table'"
     trigger = "SELECT 1 FROM sqlite_master WHERE type = 'trigger'"

@@ -13,7 +13,7 @@ void dig_sql_setup(struct dig_db *const db)
     static const int off[] = {
         SQLITE_DBCONFIG_TRUSTED_SCHEMA,
         SQLITE_DBCONFIG_ENABLE_TRIGGER,
-        SQLITE_DBCONFIG_ENABLE_VIEW, // temporary views stay
+        SQLITE_DBCONFIG_ENABLE_VIEW,
         SQLITE_DBCONFIG_ENABLE_FTS3_TOKENIZER,
         SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION,
         SQLITE_DBCONFIG_DQS_DDL,
@@ -96,14 +96,14 @@ static void compare(sqlite3_stmt *const found, sqlite3_stmt *const expected,
     }
 }
 
-void dig_schema_compare(struct dig_db *const db, const int version)
+void dig_schema_compare(struct dig_db *const db)
 {
     struct dig_db ours = { .path = db->path, .status = db->status, .error = db->error };
     if (sqlite3_open_v2(":memory:", &ours.sql, SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY, NULL) !=
         SQLITE_OK) {
         dig_db_fail(&ours, DIG_ENOMEM, "no memory");
     }
-    dig_schema_tables(&ours, version);
+    dig_schema_tables(&ours);
     sqlite3_stmt *const expected = dig_sql_prepare(&ours, objects_sql);
     sqlite3_stmt *const found    = dig_sql_prepare(db, objects_sql);
     db->status                   = ours.status != DIG_OK ? ours.status : db->status;

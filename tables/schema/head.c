@@ -1,4 +1,4 @@
-// Checks that a file is a whole table of a known version, and reads its head.
+// Checks that a file is a whole table of this version, and reads its head.
 
 #include "core/approach.h"
 #include "core/name.h"
@@ -23,8 +23,7 @@ static int pragma_int(struct dig_db *const db, const char *const sql)
     return value;
 }
 
-// Returns the version.
-static int check_identity(struct dig_db *const db)
+static void check_identity(struct dig_db *const db)
 {
     const int id      = pragma_int(db, "PRAGMA main.application_id");
     const int version = pragma_int(db, "PRAGMA main.user_version");
@@ -32,13 +31,12 @@ static int check_identity(struct dig_db *const db)
         dig_db_fail(db, DIG_EINVAL, "not a digsight table (application_id %d, expected %d)", id,
                     DIG_TABLE_APPLICATION_ID);
     }
-    if (version < DIG_TABLE_VERSION_PLAIN || version > DIG_TABLE_VERSION) {
+    if (version != DIG_TABLE_VERSION) {
         dig_db_fail(db, DIG_ESCHEMA,
-                    "user_version: table format %d, expected %d to %d as this program knows them "
-                    "(the digtable generate command that made the table makes it anew)",
-                    version, DIG_TABLE_VERSION_PLAIN, DIG_TABLE_VERSION);
+                    "user_version: table format %d, expected %d (the digtable generate command "
+                    "that made the table makes it anew)",
+                    version, DIG_TABLE_VERSION);
     }
-    return version;
 }
 
 static void check_integrity(struct dig_db *const db)
@@ -215,15 +213,11 @@ static void read_canonical(struct dig_table_head *const head, const char *const 
     }
 }
 
-// A dig of a version without depth and attack is plain.
-static const char plain_ground_sql[] =
-    "CREATE TEMP VIEW ground AS SELECT id, friction, rolling, density_kgpm3, effect, magnitude, "
-    "1.0 AS depth, 0.0 AS attack_rad FROM main.ground";
-
 void dig_schema_check(struct dig_db *const db, struct dig_table_head *const head)
 {
-    struct dig_table_head read = { .version = check_identity(db) };
-    dig_schema_compare(db, read.version);
+    struct dig_table_head read = { .trajectories = 0 };
+    check_identity(db);
+    dig_schema_compare(db);
     check_integrity(db);
     char *const canonical = read_scene(db, &read);
     read_trajectories(db, &read);
@@ -235,12 +229,7 @@ void dig_schema_check(struct dig_db *const db, struct dig_table_head *const head
         read_canonical(&read, canonical);
     }
     free(canonical);
-    if (read.version == DIG_TABLE_VERSION_PLAIN) {
-        dig_sql_run(db, plain_ground_sql);
-    }
-    if (read.version >= DIG_TABLE_VERSION) {
-        dig_seal_check(db);
-    }
+    dig_seal_check(db);
     if (db->status == DIG_OK) {
         *head = read;
     }

@@ -1,68 +1,64 @@
 #include "tables/schema/schema.h"
 
-#include "tables/schema/seal.h"
-
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-// What all versions have alike.
-static const char common_sql[] = "CREATE TABLE scene ("
-                                 "  id INTEGER PRIMARY KEY CHECK (id = 1),"
-                                 "  name TEXT NOT NULL,"
-                                 "  hash TEXT NOT NULL CHECK (length(hash) = 64),"
-                                 "  canonical TEXT NOT NULL,"
-                                 "  tooth_m REAL NOT NULL,"
-                                 "  bucket_width_m REAL NOT NULL,"
-                                 "  young_Pa REAL NOT NULL,"
-                                 "  smooth_half_s REAL NOT NULL,"
-                                 "  points INTEGER NOT NULL"
-                                 ") STRICT;"
-                                 "CREATE TABLE trajectory ("
-                                 "  id INTEGER PRIMARY KEY,"
-                                 "  name TEXT NOT NULL UNIQUE,"
-                                 "  theta0_rad REAL NOT NULL,"
-                                 "  start_x_m REAL NOT NULL,"
-                                 "  start_z_m REAL NOT NULL"
-                                 ") STRICT;"
-                                 "CREATE TABLE phase ("
-                                 "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
-                                 "  number INTEGER NOT NULL,"
-                                 "  name TEXT NOT NULL,"
-                                 "  duration_s REAL NOT NULL,"
-                                 "  vx_mps REAL NOT NULL,"
-                                 "  vz_mps REAL NOT NULL,"
-                                 "  omega_radps REAL NOT NULL,"
-                                 "  PRIMARY KEY (trajectory, number)"
-                                 ") STRICT;"
-                                 "CREATE TABLE run ("
-                                 "  id INTEGER PRIMARY KEY,"
-                                 "  ground INTEGER NOT NULL REFERENCES ground (id),"
-                                 "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
-                                 "  packing INTEGER NOT NULL CHECK (packing >= 0),"
-                                 "  seed INTEGER NOT NULL,"
-                                 "  engine TEXT NOT NULL,"
-                                 "  version TEXT NOT NULL,"
-                                 "  grains INTEGER NOT NULL,"
-                                 "  windows INTEGER NOT NULL CHECK (windows >= 2),"
-                                 "  first_s REAL NOT NULL,"
-                                 "  step_s REAL NOT NULL CHECK (step_s > 0),"
-                                 "  curve BLOB NOT NULL,"
-                                 "  made_utc TEXT NOT NULL,"
-                                 "  wall_s REAL NOT NULL,"
-                                 "  UNIQUE (ground, trajectory, packing)"
-                                 ") STRICT;"
-                                 "CREATE TABLE entry ("
-                                 "  ground INTEGER NOT NULL REFERENCES ground (id),"
-                                 "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
-                                 "  packings INTEGER NOT NULL CHECK (packings > 0),"
-                                 "  mean BLOB NOT NULL,"
-                                 "  spread BLOB CHECK ((spread IS NULL) = (packings = 1)),"
-                                 "  PRIMARY KEY (ground, trajectory)"
-                                 ") STRICT;";
-
-static const char plain_ground_sql[] =
+static const char tables_sql[] =
+    "CREATE TABLE scene ("
+    "  id INTEGER PRIMARY KEY CHECK (id = 1),"
+    "  name TEXT NOT NULL,"
+    "  hash TEXT NOT NULL CHECK (length(hash) = 64),"
+    "  canonical TEXT NOT NULL,"
+    "  tooth_m REAL NOT NULL,"
+    "  bucket_width_m REAL NOT NULL,"
+    "  young_Pa REAL NOT NULL,"
+    "  smooth_half_s REAL NOT NULL,"
+    "  points INTEGER NOT NULL"
+    ") STRICT;"
+    "CREATE TABLE trajectory ("
+    "  id INTEGER PRIMARY KEY,"
+    "  name TEXT NOT NULL UNIQUE,"
+    "  theta0_rad REAL NOT NULL,"
+    "  start_x_m REAL NOT NULL,"
+    "  start_z_m REAL NOT NULL"
+    ") STRICT;"
+    "CREATE TABLE phase ("
+    "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
+    "  number INTEGER NOT NULL,"
+    "  name TEXT NOT NULL,"
+    "  duration_s REAL NOT NULL,"
+    "  vx_mps REAL NOT NULL,"
+    "  vz_mps REAL NOT NULL,"
+    "  omega_radps REAL NOT NULL,"
+    "  PRIMARY KEY (trajectory, number)"
+    ") STRICT;"
+    "CREATE TABLE run ("
+    "  id INTEGER PRIMARY KEY,"
+    "  ground INTEGER NOT NULL REFERENCES ground (id),"
+    "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
+    "  packing INTEGER NOT NULL CHECK (packing >= 0),"
+    "  seed INTEGER NOT NULL,"
+    "  engine TEXT NOT NULL,"
+    "  version TEXT NOT NULL,"
+    "  grains INTEGER NOT NULL,"
+    "  windows INTEGER NOT NULL CHECK (windows >= 2),"
+    "  first_s REAL NOT NULL,"
+    "  step_s REAL NOT NULL CHECK (step_s > 0),"
+    "  curve BLOB NOT NULL,"
+    "  made_utc TEXT NOT NULL,"
+    "  wall_s REAL NOT NULL,"
+    "  UNIQUE (ground, trajectory, packing)"
+    ") STRICT;"
+    "CREATE TABLE entry ("
+    "  ground INTEGER NOT NULL REFERENCES ground (id),"
+    "  trajectory INTEGER NOT NULL REFERENCES trajectory (id),"
+    "  packings INTEGER NOT NULL CHECK (packings > 0),"
+    "  mean BLOB NOT NULL,"
+    "  spread BLOB CHECK ((spread IS NULL) = (packings = 1)),"
+    "  PRIMARY KEY (ground, trajectory)"
+    ") STRICT;"
     "CREATE TABLE ground ("
     "  id INTEGER PRIMARY KEY,"
     "  friction REAL NOT NULL,"
@@ -70,7 +66,16 @@ static const char plain_ground_sql[] =
     "  density_kgpm3 REAL NOT NULL,"
     "  effect TEXT NOT NULL,"
     "  magnitude REAL NOT NULL CHECK (effect <> '' OR magnitude = 0),"
-    "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude)"
+    "  depth REAL NOT NULL CHECK (depth > 0),"
+    "  attack_rad REAL NOT NULL,"
+    "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad)"
+    ") STRICT;"
+    "CREATE TABLE seal ("
+    "  ground INTEGER NOT NULL,"
+    "  trajectory INTEGER NOT NULL,"
+    "  sum INTEGER NOT NULL,"
+    "  PRIMARY KEY (ground, trajectory),"
+    "  FOREIGN KEY (ground, trajectory) REFERENCES entry (ground, trajectory)"
     ") STRICT;";
 
 void dig_db_fail(struct dig_db *const db, const enum dig_status status, const char *const format,
@@ -208,29 +213,19 @@ static void insert_trajectory(struct dig_db *const db, const int id,
     }
 }
 
-void dig_schema_tables(struct dig_db *const db, const int version)
-{
-    static const char ground_sql[] = DIG_GROUND_SQL("ground");
-    dig_sql_run(db, common_sql);
-    dig_sql_run(db, version == DIG_TABLE_VERSION_PLAIN ? plain_ground_sql : ground_sql);
-    if (version >= DIG_TABLE_VERSION) {
-        dig_sql_run(db, DIG_SEAL_SQL);
-    }
-}
-
-void dig_schema_number(struct dig_db *const db)
+void dig_schema_tables(struct dig_db *const db)
 {
     char ids[128];
     (void)snprintf(ids, sizeof ids, "PRAGMA application_id = %d; PRAGMA user_version = %d;",
                    DIG_TABLE_APPLICATION_ID, DIG_TABLE_VERSION);
+    dig_sql_run(db, tables_sql);
     dig_sql_run(db, ids);
 }
 
 void dig_schema_create(struct dig_db *const db, const struct dig_scene *const scene)
 {
     dig_sql_run(db, "BEGIN IMMEDIATE");
-    dig_schema_tables(db, DIG_TABLE_VERSION);
-    dig_schema_number(db);
+    dig_schema_tables(db);
     insert_scene(db, scene);
     for (size_t i = 0; i < scene->trajectories; i++) {
         insert_trajectory(db, (int)i, &scene->trajectory[i]);

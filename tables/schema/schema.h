@@ -12,22 +12,7 @@
 #include <stdbool.h>
 
 #define DIG_TABLE_APPLICATION_ID 0x44494754 // "DIGT", at byte 68 of the file
-#define DIG_TABLE_VERSION        4          // PRAGMA user_version; 3 has no seals
-#define DIG_TABLE_VERSION_PLAIN  2          // before depth and attack: every dig is plain
-
-/// What was dug in, and how: the key of a dig but for its trajectory and packing.
-#define DIG_GROUND_SQL(name)                                                                       \
-    "CREATE TABLE " name " ("                                                                      \
-    "  id INTEGER PRIMARY KEY,"                                                                    \
-    "  friction REAL NOT NULL,"                                                                    \
-    "  rolling REAL NOT NULL,"                                                                     \
-    "  density_kgpm3 REAL NOT NULL,"                                                               \
-    "  effect TEXT NOT NULL,"                                                                      \
-    "  magnitude REAL NOT NULL CHECK (effect <> '' OR magnitude = 0),"                             \
-    "  depth REAL NOT NULL CHECK (depth > 0),"                                                     \
-    "  attack_rad REAL NOT NULL,"                                                                  \
-    "  UNIQUE (friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad)"            \
-    ") STRICT;"
+#define DIG_TABLE_VERSION        4          // PRAGMA user_version
 
 /// What a table says of itself, read once at opening.
 struct dig_table_head {
@@ -41,7 +26,6 @@ struct dig_table_head {
     struct dig_material   finest; // its smallest grains; of several spheres: of their volume
     enum dig_normal_law   normal;
     bool                  density_scales; // curves of two densities differ by their ratio alone
-    int                   version;        // of the file
 };
 
 /// An open database, and its file's name, which lives as long. What fails first stays, in status
@@ -85,27 +69,19 @@ bool dig_sql_row(struct dig_db *db, sqlite3_stmt *s);
 /// Runs a statement that gives no rows, and finalizes it.
 void dig_sql_done(struct dig_db *db, sqlite3_stmt *s);
 
-/// Makes an empty database a table of this version without rows; its number is not written.
-void dig_schema_tables(struct dig_db *db, int version);
-
-/// Writes application_id and user_version.
-void dig_schema_number(struct dig_db *db);
+/// Makes an empty database a table without rows, application_id and user_version with it.
+void dig_schema_tables(struct dig_db *db);
 
 /// Makes an empty database the table of this scene, in one transaction.
 void dig_schema_create(struct dig_db *db, const struct dig_scene *scene);
 
-/// Refuses a file whose schema is not, word for word, that of a table of this version.
-void dig_schema_compare(struct dig_db *db, int version);
+/// Refuses a file whose schema is not, word for word, that of a table.
+void dig_schema_compare(struct dig_db *db);
 
-/// Refuses what is no table (DIG_EINVAL), a version not known (DIG_ESCHEMA, all named), and a
-/// damaged file; then reads the head, and compares every entry and its runs with their seal
-/// (tables/schema/seal.h). Writes *head on success only. Reads the whole file. From then on the
-/// connection reads `ground` with depth and attack_rad whatever the file's version: where the file
-/// has none, in a temporary view. What it found holds for what is read in the same transaction.
+/// Refuses what is no table (DIG_EINVAL), another version (DIG_ESCHEMA, both named), and a damaged
+/// file; then reads the head, and compares every entry and its runs with their seal
+/// (tables/schema/seal.h). Writes *head on success only. Reads the whole file. What it found holds
+/// for what is read in the same transaction.
 void dig_schema_check(struct dig_db *db, struct dig_table_head *head);
-
-/// Makes a table of an older version one of ours: digs without an approach become plain, entries
-/// are sealed. In no transaction; all or nothing.
-void dig_schema_upgrade(struct dig_db *db, int version);
 
 #endif // DIG_TABLES_SCHEMA_SCHEMA_H

@@ -90,23 +90,17 @@ static sqlite3_int64 sum_of(const struct sealer *const s, const sqlite3_int64 gr
     return (sqlite3_int64)dig_sha256_finish_number(&hash);
 }
 
-static void write_one(const struct sealer *const s, const sqlite3_int64 ground,
-                      const sqlite3_int64 trajectory)
-{
-    const sqlite3_int64 sum = sum_of(s, ground, trajectory);
-    sqlite3_stmt *const into =
-        dig_sql_prepare(s->db, "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
-                               "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3");
-    (void)sqlite3_bind_int64(into, 1, ground);
-    (void)sqlite3_bind_int64(into, 2, trajectory);
-    (void)sqlite3_bind_int64(into, 3, sum);
-    dig_sql_done(s->db, into);
-}
-
 void dig_seal_write(struct dig_db *const db, const sqlite3_int64 ground, const size_t trajectory)
 {
-    const struct sealer s = begin(db);
-    write_one(&s, ground, (sqlite3_int64)trajectory);
+    const struct sealer s   = begin(db);
+    const sqlite3_int64 sum = sum_of(&s, ground, (sqlite3_int64)trajectory);
+    sqlite3_stmt *const into =
+        dig_sql_prepare(db, "INSERT INTO seal (ground, trajectory, sum) VALUES (?1, ?2, ?3) "
+                            "ON CONFLICT (ground, trajectory) DO UPDATE SET sum = ?3");
+    (void)sqlite3_bind_int64(into, 1, ground);
+    (void)sqlite3_bind_int64(into, 2, (sqlite3_int64)trajectory);
+    (void)sqlite3_bind_int64(into, 3, sum);
+    dig_sql_done(db, into);
     end(&s);
 }
 
@@ -132,18 +126,6 @@ static void each(const struct sealer *const s, const char *const sql,
         what(s, entry);
     }
     (void)sqlite3_finalize(entry);
-}
-
-static void write_of(const struct sealer *const s, sqlite3_stmt *const entry)
-{
-    write_one(s, sqlite3_column_int64(entry, 0), sqlite3_column_int64(entry, 1));
-}
-
-void dig_seal_write_all(struct dig_db *const db)
-{
-    const struct sealer s = begin(db);
-    each(&s, "SELECT ground, trajectory FROM entry ORDER BY 1, 2", write_of);
-    end(&s);
 }
 
 static void refuse_run(const struct sealer *const s, sqlite3_stmt *const run)

@@ -15,20 +15,8 @@
 
 #include <stddef.h>
 
-#define DIG_SEAL_SQL                                                                               \
-    "CREATE TABLE seal ("                                                                          \
-    "  ground INTEGER NOT NULL,"                                                                   \
-    "  trajectory INTEGER NOT NULL,"                                                               \
-    "  sum INTEGER NOT NULL,"                                                                      \
-    "  PRIMARY KEY (ground, trajectory),"                                                          \
-    "  FOREIGN KEY (ground, trajectory) REFERENCES entry (ground, trajectory)"                     \
-    ") STRICT;"
-
 /// Seals one entry as it and its runs stand, in place of what was there.
 void dig_seal_write(struct dig_db *db, sqlite3_int64 ground, size_t trajectory);
-
-/// Seals every entry.
-void dig_seal_write_all(struct dig_db *db);
 
 /// Refuses an entry that is not sealed, or is not, with its runs, what was sealed, and a run
 /// without an entry: DIG_EINVAL, the first one named. Reads every run.

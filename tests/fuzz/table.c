@@ -5,9 +5,8 @@
 // odd length is not.
 
 #include "tables/load.h"
-#include "tables/schema/seal.h"
-#include "tables/store.h"
 #include "tests/fuzz/as_file.h"
+#include "tests/seal_all.h"
 
 #include <sqlite3.h>
 #include <string.h>
@@ -20,28 +19,14 @@
 static uint8_t good[BYTES_MAX];
 static size_t  good_size;
 
-static size_t read_good(const char *const path)
-{
-    FILE *const file = fopen(path, "rb");
-    good_size        = file != NULL ? fread(good, 1, sizeof good, file) : 0;
-    if (file == NULL || fclose(file) != 0 || good_size == 0) {
-        (void)fprintf(stderr, "%s: missing\n", path);
-        exit(2);
-    }
-    return good_size;
-}
-
-// The example is of an older version: sealing makes it one of ours.
 static void load_good(void)
 {
-    struct dig_error  error = { "" };
-    bool              was   = false;
-    const char *const path  = as_file(good, read_good(GOOD));
-    if (dig_store_seal(path, &was, &error) != DIG_OK) {
-        (void)fprintf(stderr, "%s\n", error.text);
+    FILE *const file = fopen(GOOD, "rb");
+    good_size        = file != NULL ? fread(good, 1, sizeof good, file) : 0;
+    if (file == NULL || fclose(file) != 0 || good_size == 0) {
+        (void)fprintf(stderr, GOOD ": missing\n");
         exit(2);
     }
-    (void)read_good(path);
 }
 
 // The next patch, and what is left of the input behind it.
@@ -110,10 +95,9 @@ static void patch_cell(sqlite3 *const db, const struct patch *const p)
 
 static void patch_cells_and_seal(const char *const path, const uint8_t *data, size_t size)
 {
-    sqlite3         *db     = NULL;
-    const bool       sealed = size % 2 == 0;
-    struct dig_error error  = { "" };
-    struct patch     p;
+    sqlite3     *db     = NULL;
+    const bool   sealed = size % 2 == 0;
+    struct patch p;
     if (sqlite3_open_v2(path, &db, SQLITE_OPEN_READWRITE, NULL) == SQLITE_OK) {
         (void)sqlite3_exec(db,
                            "PRAGMA synchronous = OFF; PRAGMA journal_mode = OFF; "
@@ -125,9 +109,7 @@ static void patch_cells_and_seal(const char *const path, const uint8_t *data, si
             }
         }
         if (sealed) {
-            struct dig_db sealing = { .sql = db, .path = path, .error = &error };
-            dig_seal_write_all(&sealing);
-            expect_word(sealing.status, &error);
+            seal_all_of(db, path);
         }
         (void)sqlite3_exec(db, "COMMIT", NULL, NULL, NULL);
     }

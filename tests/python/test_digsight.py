@@ -115,7 +115,7 @@ class Digsight(unittest.TestCase):
             everything("README.md")
         for sql, says in (
             ("PRAGMA application_id = 7", "not a table of digtable"),
-            ("PRAGMA user_version = 2", "table format 2, expected 3 or 4"),
+            ("PRAGMA user_version = 3", "table format 3, expected 4"),
             ("CREATE VIEW more AS SELECT 1", "a view"),
             ("DROP TABLE seal; DROP TABLE entry", "no such table: entry"),
             ("UPDATE scene SET points = 1", "scene: expected"),

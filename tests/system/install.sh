@@ -64,7 +64,7 @@ if [ -e /usr/share/bash-completion/bash_completion ]; then
         local word
         for word in $2; do grep -qxF -- "$word" "$work/err" || return 1; done
     }
-    check "commands are completed" completes "digtable s" "show seal submit status"
+    check "commands are completed" completes "digtable s" "show submit status"
     check "so are a command's options" completes "digloop identify --m" "--machine --model --moment-alone"
     check "not those of another" eval '! completes "digtable list --" --seed'
     check "words that an option takes" completes "digtable dig --engine " "single kernel ode cuda"

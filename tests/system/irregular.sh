@@ -26,7 +26,7 @@ refused "generate's grid" digtable generate $scene FILE -o "$out"
 refused "generate's table" digtable generate $scene tests/data/formats/grid.yaml -o FILE
 refused "dig's scene" digtable dig FILE --trajectory scrape --friction .5 --rolling .5 --density 2500 -o "$out"
 refused "dig's bed" digtable dig $scene --trajectory scrape --friction .5 --rolling .5 --density 2500 --bed FILE -o "$out"
-for command in list check seal export; do refused "$command" digtable $command FILE; done
+for command in list check export; do refused "$command" digtable $command FILE; done
 refused "show" digtable show FILE 1
 refused "merge" digtable merge "$out" tests/data/formats/table.sqlite FILE
 refused "import's curves" digtable import FILE --map tests/data/formats/curve_map.yaml -o "$out"

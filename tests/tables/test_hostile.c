@@ -77,8 +77,6 @@ TEST_WITH(a_schema_that_is_not_ours_is_refused_before_anything_of_it_runs, scrat
         "WHERE name = 'ground'",
         "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, 'depth > 0', "
         "'randomblob(9e8) > 0') WHERE name = 'ground'",
-        "PRAGMA user_version = 3",
-        "PRAGMA user_version = 2",
         "DROP TABLE seal",
     };
     for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
@@ -132,10 +130,8 @@ TEST_WITH(what_is_no_number_of_its_column_is_refused, scratch_setup, scratch_tea
         char sql[2048];
         (void)snprintf(sql, sizeof sql, "ATTACH '%s' AS good; %s", scratch_path("good.sqlite"),
                        hostile[i].sql);
-        const char *const path =
-            fixture_copy("good.sqlite", "bad.sqlite", "DROP TABLE seal; PRAGMA user_version = 3");
-        fixture_run_sql("bad.sqlite", sql);
-        assert_table_refused(path, hostile[i].says);
+        assert_table_refused(fixture_copy_sealed("good.sqlite", "bad.sqlite", sql),
+                             hostile[i].says);
     }
 }
 
@@ -162,7 +158,7 @@ TEST_WITH(numbers_out_of_all_bounds_are_refused, scratch_setup, scratch_teardown
         { "UPDATE phase SET number = number + 4294967296", "trajectory: expected rows" },
     };
     for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
-        assert_table_refused(fixture_copy_bare("good.sqlite", "bad.sqlite", hostile[i].sql),
+        assert_table_refused(fixture_copy_sealed("good.sqlite", "bad.sqlite", hostile[i].sql),
                              hostile[i].says);
     }
 }
@@ -181,7 +177,7 @@ TEST_WITH(texts_that_would_break_an_export_are_refused_where_runs_are_read, scra
         const struct dig_run_visitor visitor = { pass_over, NULL };
         struct dig_store            *store   = NULL;
         struct dig_error             error   = { "" };
-        const char *const path = fixture_copy_bare("good.sqlite", "bad.sqlite", hostile[i]);
+        const char *const path = fixture_copy_sealed("good.sqlite", "bad.sqlite", hostile[i]);
         assert_int_equal(dig_store_open(path, &store, NULL), DIG_OK);
         assert_refused(dig_store_walk(store, &visitor, &error), error, DIG_EINVAL, "run: engine ");
         dig_store_close(store);

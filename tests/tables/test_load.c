@@ -163,7 +163,7 @@ TEST(damage_is_refused_and_named)
         enum dig_status status;
         const char     *says;
     } bad[] = {
-        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 2 to 4" },
+        { "PRAGMA user_version = 7", DIG_ESCHEMA, "user_version: table format 7, expected 4" },
         { "PRAGMA application_id = 99", DIG_EINVAL, "not a digsight table (application_id 99" },
         { "UPDATE scene SET hash = replace(hash, substr(hash, 1, 1), 'x')", DIG_EINVAL,
           "scene.hash: " },
@@ -202,7 +202,7 @@ TEST(damage_is_refused_and_named)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_curve_set *set   = NULL;
         struct dig_error      error = { "" };
-        const char *const     path  = fixture_copy_bare("good.sqlite", "bad.sqlite", bad[i].sql);
+        const char *const     path  = fixture_copy_sealed("good.sqlite", "bad.sqlite", bad[i].sql);
         assert_int_equal(dig_table_load(path, &set, &error), bad[i].status);
         assert_null(set);
         assert_contains(error.text, "bad.sqlite: ");

@@ -112,8 +112,8 @@ TEST(what_does_not_belong_together_is_refused)
     dig_store_close(store);
     assert_refused(dig_effects_load(scratch_path("plain.sqlite"), plain, &set, &error), error,
                    DIG_EINVAL, "plain.sqlite: ground: no rows with an effect");
-    (void)fixture_copy_bare("mine.sqlite", "odd.sqlite",
-                            "UPDATE ground SET effect = 'gremlins' WHERE effect = 'cohesion'");
+    (void)fixture_copy_sealed("mine.sqlite", "odd.sqlite",
+                              "UPDATE ground SET effect = 'gremlins' WHERE effect = 'cohesion'");
     assert_int_equal(dig_effects_load(scratch_path("odd.sqlite"), plain, &set, &error), DIG_EINVAL);
     assert_contains(error.text, "ground.effect: \"gremlins\" of magnitude");
     assert_null(set);

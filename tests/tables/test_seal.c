@@ -106,42 +106,6 @@ TEST_WITH(a_flipped_bit_is_found_or_changes_nothing, scratch_setup, scratch_tear
     assert_true(refused > 0 && as_before > 0); // rows, and what is free between them
 }
 
-TEST_WITH(a_table_of_before_is_read_and_sealed_when_asked, scratch_setup, scratch_teardown)
-{
-    make_sealed("good.sqlite");
-    const char *const path   = fixture_copy_bare("good.sqlite", "bare.sqlite", "");
-    uint64_t          before = 0;
-    uint64_t          after  = 0;
-    bool              was    = true;
-    assert_true(table_content(path, &before));
-    assert_int_equal(dig_store_seal(path, &was, NULL), DIG_OK);
-    assert_false(was);
-    assert_int_equal(fixture_ask("bare.sqlite", "PRAGMA user_version"), 4);
-    assert_int_equal(fixture_ask("bare.sqlite", "SELECT count(*) FROM seal"), 4);
-    assert_true(table_content(path, &after));
-    assert_true(before == after);
-    assert_int_equal(dig_store_seal(path, &was, NULL), DIG_OK);
-    assert_true(was);
-
-    // The sums are those of the table that was sealed as it was made.
-    assert_true(fixture_ask("bare.sqlite", "SELECT sum(sum / 16) FROM seal") ==
-                fixture_ask("good.sqlite", "SELECT sum(sum / 16) FROM seal"));
-}
-
-TEST_WITH(what_is_damaged_already_is_not_sealed, scratch_setup, scratch_teardown)
-{
-    make_sealed("good.sqlite");
-    struct dig_error  error = { "" };
-    bool              was   = true;
-    const char *const path  = fixture_copy_bare(
-         "good.sqlite", "bare.sqlite", "UPDATE entry SET spread = mean WHERE spread IS NOT NULL");
-    assert_refused(dig_store_seal(path, &was, &error), error, DIG_EINVAL, "bare.sqlite: entry: ");
-    assert_int_equal(fixture_ask("bare.sqlite", "PRAGMA user_version"), 3);
-    assert_true(was);
-    assert_int_equal(dig_store_seal(scratch_path("absent.sqlite"), &was, &error), DIG_EIO);
-    assert_false(scratch_exists("absent.sqlite"));
-}
-
 TEST_WITH(a_merged_table_has_the_seals_of_its_inputs, scratch_setup, scratch_teardown)
 {
     make_sealed("good.sqlite");

@@ -181,7 +181,7 @@ TEST(what_cannot_become_a_table_is_left_as_it_was)
     dig_store_close(fixture_create("newer.sqlite"));
     fixture_run_sql("newer.sqlite", "PRAGMA user_version = 5");
     assert_refused(dig_store_create(scratch_path("newer.sqlite"), &scene, &store, &error), error,
-                   DIG_ESCHEMA, "newer.sqlite: user_version: table format 5, expected 2 to 4");
+                   DIG_ESCHEMA, "newer.sqlite: user_version: table format 5, expected 4");
 
     assert_int_equal(
         dig_store_create(scratch_path("no/such/folder.sqlite"), &scene, &store, &error), DIG_EIO);
@@ -289,13 +289,12 @@ TEST(the_check_counts_holes_and_finds_entries_that_lie)
         "UPDATE entry SET mean = (SELECT mean FROM entry WHERE ground = 2) WHERE ground = 1",
         "UPDATE entry SET spread = mean WHERE ground = 3",
         "UPDATE entry SET packings = 3 WHERE ground = 3",
-        "DELETE FROM entry WHERE ground = 1",
         "DELETE FROM run WHERE ground = 2",
     };
     for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
         struct dig_error error = { "" };
         report                 = (struct dig_store_report){ .runs = 42 };
-        (void)fixture_copy_bare("check.sqlite", "lie.sqlite", lies[i]);
+        (void)fixture_copy_sealed("check.sqlite", "lie.sqlite", lies[i]);
         assert_int_equal(dig_store_open(scratch_path("lie.sqlite"), &store, NULL), DIG_OK);
         assert_int_equal(dig_store_check(store, &report, &error), DIG_EINVAL);
         assert_contains(error.text, "lie.sqlite: entry: friction");

@@ -153,9 +153,6 @@ static const struct dig_command commands[] = {
       "order.",
       "digtable merge my.sqlite part*.sqlite\n"
       "digtable merge my.sqlite my.sqlite.jobs/shards\n" },
-    { "seal", "TABLE.sqlite [OPTION]...", "Seals a table of an older version.",
-      "The table is checked, and shows a flipped bit from then on whenever it is read.",
-      "digtable seal old.sqlite\n" },
     { "export", "TABLE.sqlite [OPTION]...", "Writes all curves of a table as CSV.", NULL,
       "digtable export tables/product.sqlite -o curves.csv\n"
       "digtable export tables/product_effects.sqlite --effects >effects.csv\n"
@@ -220,7 +217,7 @@ static const struct dig_option options[] = {
     { "partition", "P", " submit ", "where Slurm is to run them", INTO(partition) },
     { "sbatch-arg", "A", " submit ", "one more argument for sbatch; repeatable",
       .take = take_sbatch_arg },
-    { "quiet", NULL, " dig generate import seal submit ", "no progress, only what goes wrong",
+    { "quiet", NULL, " dig generate import submit ", "no progress, only what goes wrong",
       INTO(quiet), .letter = 'q' },
     { "map", "MAP.yaml", " import ", "which column holds what", INTO(map) },
     { "channel", "My|Fx|Fz|carried", " show ", "what to draw (default My)", .take = take_channel },

@@ -11,7 +11,6 @@ int dig_cli_submit(const struct dig_arguments *a);
 int dig_cli_status(const struct dig_arguments *a);
 int dig_cli_list(const struct dig_arguments *a);
 int dig_cli_check(const struct dig_arguments *a);
-int dig_cli_seal(const struct dig_arguments *a);
 int dig_cli_show(const struct dig_arguments *a);
 int dig_cli_import(const struct dig_arguments *a);
 int dig_cli_merge(const struct dig_arguments *a);

@@ -116,20 +116,6 @@ int dig_cli_check(const struct dig_arguments *const a)
     return a->complete && report.holes + report.incomplete > 0 ? EXIT_WORK_FAILED : EXIT_DONE;
 }
 
-int dig_cli_seal(const struct dig_arguments *const a)
-{
-    struct dig_error      error  = { "" };
-    bool                  was    = false;
-    const enum dig_status status = dig_store_seal(a->positional[0], &was, &error);
-    if (status != DIG_OK) {
-        return dig_cli_bad_input(status, &error);
-    }
-    if (!a->quiet) {
-        dig_text_print(stdout, was ? "%s: was sealed\n" : "%s: sealed\n", a->positional[0]);
-    }
-    return EXIT_DONE;
-}
-
 // The entry asked for, by number or by gravel and approach; their number when there is none.
 static size_t find_entry(const struct dig_arguments *const a, const struct dig_curve_set *const set)
 {
