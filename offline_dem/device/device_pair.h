@@ -40,15 +40,9 @@ DIG_BOTH static inline void dig_device_step_pair(const struct dig_device_view *c
         }
         return;
     }
-    kinematics.vx_mps   = a->v_mps[0] - b->v_mps[0];
-    kinematics.vy_mps   = a->v_mps[1] - b->v_mps[1];
-    kinematics.vz_mps   = a->v_mps[2] - b->v_mps[2];
-    kinematics.ix_radps = a->w_radps[0];
-    kinematics.iy_radps = a->w_radps[1];
-    kinematics.iz_radps = a->w_radps[2];
-    kinematics.jx_radps = b->w_radps[0];
-    kinematics.jy_radps = b->w_radps[1];
-    kinematics.jz_radps = b->w_radps[2];
+    const double near_m = kinematics.dy_m;
+    kinematics          = dig_motion_between(a, b);
+    kinematics.dy_m     = near_m;
     const struct dig_contact_force force =
         dig_law_apply(law, step->dt_s, &kinematics, &view->pair_history[pair]);
     const struct dig_load to_i = { { force.fx_N, force.fy_N, force.fz_N, 0.0 },

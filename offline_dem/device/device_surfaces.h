@@ -1,11 +1,10 @@
-// Walls, tool and rocks at one grain in one step of a device. Rules of contact with the tool:
-// surfaces.h.
+// Walls, tool and rocks at one grain in one step of a device.
 
 #ifndef DIG_OFFLINE_DEM_DEVICE_DEVICE_SURFACES_H
 #define DIG_OFFLINE_DEM_DEVICE_DEVICE_SURFACES_H
 
 #include "offline_dem/device/device_pair.h"
-#include "offline_dem/shapes/bucket_surface.h"
+#include "offline_dem/shapes/plate_contacts.h"
 
 #include <math.h>
 
@@ -20,13 +19,6 @@ struct dig_device_contacts {
     struct dig_motion             m;
     struct dig_load               load;
     uint64_t                      surface_mask;
-};
-
-/// The plates near a grain; those in contact are marked.
-struct dig_device_plates {
-    double   closest_m[DIG_PLATES_MAX][3]; // body frame
-    double   distance_m[DIG_PLATES_MAX];
-    uint32_t contact_mask; // bit p: plate p is touched
 };
 
 DIG_BOTH static inline struct dig_contact_history *
@@ -114,60 +106,6 @@ DIG_BOTH static inline void dig_device_add_walls(struct dig_device_contacts *con
     }
 }
 
-DIG_BOTH static inline bool dig_device_has_history(const struct dig_device_contacts *const grain,
-                                                   const uint32_t                          plate)
-{
-    const struct dig_contact_history *const m =
-        dig_device_surface_history(grain, dig_device_plate(grain, plate));
-    return fabs(m->sx_m) > 0.0 || fabs(m->sy_m) > 0.0 || fabs(m->sz_m) > 0.0 ||
-           fabs(m->mx_Nm) > 0.0 || fabs(m->my_Nm) > 0.0 || fabs(m->mz_Nm) > 0.0;
-}
-
-/// Moves the history of one plate to another, unless that has one.
-DIG_BOTH static inline void dig_device_move_history(struct dig_device_contacts *const grain,
-                                                    const uint32_t from, const uint32_t to)
-{
-    if (!dig_device_has_history(grain, to)) {
-        *dig_device_surface_history(grain, dig_device_plate(grain, to)) =
-            *dig_device_surface_history(grain, dig_device_plate(grain, from));
-        grain->surface_mask |= (uint64_t)1 << dig_device_plate(grain, to);
-        dig_device_clear_history(grain, dig_device_plate(grain, from));
-    }
-}
-
-/// Leaves the local minima of the distance to the whole tool.
-DIG_BOTH static inline void dig_device_resolve_edges(struct dig_device_contacts *const grain,
-                                                     struct dig_device_plates *const   near,
-                                                     const double                      radius_m)
-{
-    const struct dig_bucket *const bucket = &grain->step->tool.bucket;
-    const uint32_t                 plates = (uint32_t)grain->step->tool.plates;
-    const double                   same_m = 1e-6 * radius_m;
-    for (uint32_t p = 0; p < plates; p++) {
-        for (uint32_t q = 0; q < plates && (near->contact_mask >> p & 1) != 0; q++) {
-            if (q == p || (near->contact_mask >> q & 1) == 0 ||
-                near->distance_m[q] > near->distance_m[p] + same_m) {
-                continue;
-            }
-            // Does p's closest point lie on q as well?
-            double on_q[3];
-            dig_bucket_closest(bucket, q, near->closest_m[p], on_q);
-            if (dig_bucket_distance(on_q, near->closest_m[p]) > same_m) {
-                continue;
-            }
-            // On a tie the contact stays with the plate that had it; else with the first.
-            const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
-            if (tie && (dig_device_has_history(grain, p) ||
-                        (!dig_device_has_history(grain, q) && p < q))) {
-                near->contact_mask &= ~(1U << q);
-                continue;
-            }
-            dig_device_move_history(grain, p, q);
-            near->contact_mask &= ~(1U << p);
-        }
-    }
-}
-
 /// Adds one plate in contact; its reaction acts on the tool, about the pin.
 DIG_BOTH static inline void dig_device_add_plate(struct dig_device_contacts *const grain,
                                                  const uint32_t plate, const double body_m[3],
@@ -194,8 +132,9 @@ DIG_BOTH static inline void dig_device_add_tool(struct dig_device_contacts *cons
     const double reach_m = tool->radius_m + radius_m;
     const bool   is_far  = body_m[0] * body_m[0] + body_m[2] * body_m[2] > reach_m * reach_m ||
                         fabs(body_m[1]) > 0.5 * tool->bucket.width_m + radius_m;
-    struct dig_device_plates near;
-    near.contact_mask = 0;
+    struct dig_plate_contacts near;
+    near.count       = 0;
+    uint32_t touched = 0;
     for (uint32_t p = 0; p < tool->plates && !is_far; p++) {
         // The distance to a side is at least that to its plane.
         const double half_m =
@@ -203,17 +142,29 @@ DIG_BOTH static inline void dig_device_add_tool(struct dig_device_contacts *cons
         if (p + 1 >= tool->bucket.points && fabs(body_m[1] - half_m) > DIG_DEVICE_FAR * radius_m) {
             continue;
         }
-        dig_bucket_closest(&tool->bucket, p, body_m, near.closest_m[p]);
-        near.distance_m[p] = dig_bucket_distance(body_m, near.closest_m[p]);
-        near.contact_mask |= (near.distance_m[p] < radius_m ? 1U : 0U) << p;
+        if (!dig_plate_contacts_add(&tool->bucket, p, body_m, radius_m, &near)) {
+            near.count--;
+        }
     }
-    if ((near.contact_mask & (near.contact_mask - 1)) != 0) {
-        dig_device_resolve_edges(grain, &near, radius_m);
+    for (size_t k = 0; k < near.count && near.count > 1; k++) {
+        near.history[k] =
+            *dig_device_surface_history(grain, dig_device_plate(grain, (uint32_t)near.plate[k]));
+    }
+    if (near.count > 1) {
+        dig_plate_contacts_resolve(&tool->bucket, radius_m, &near);
+    }
+    for (size_t k = 0; k < near.count; k++) {
+        const uint32_t plate = (uint32_t)near.plate[k];
+        touched |= (near.touched[k] ? 1U : 0U) << plate;
+        if (near.touched[k] && near.count > 1) {
+            *dig_device_surface_history(grain, dig_device_plate(grain, plate)) = near.history[k];
+        }
+        if (near.touched[k]) {
+            dig_device_add_plate(grain, plate, body_m, near.closest_m[k]);
+        }
     }
     for (uint32_t p = 0; p < tool->plates; p++) {
-        if ((near.contact_mask >> p & 1) != 0) {
-            dig_device_add_plate(grain, p, body_m, near.closest_m[p]);
-        } else {
+        if ((touched >> p & 1) == 0) {
             dig_device_clear_history(grain, dig_device_plate(grain, p));
         }
     }

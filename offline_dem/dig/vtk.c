@@ -46,22 +46,9 @@ static void add_contact_forces(const struct dig_world *const world, const struct
     const struct dig_motion *const motion         = world->grains.motion;
     const double                   inverse_period = dig_period_inverse(world->period_y_m);
     for (size_t c = 0; c < list->n; c++) {
-        const struct dig_motion *const a          = &motion[list->i[c]];
-        const struct dig_motion *const b          = &motion[list->j[c]];
-        const struct dig_kinematics    kinematics = {
-               .dx_m   = a->x_m[0] - b->x_m[0],
-               .dy_m   = dig_period_fold(a->x_m[1] - b->x_m[1], world->period_y_m, inverse_period),
-               .dz_m   = a->x_m[2] - b->x_m[2],
-               .vx_mps = a->v_mps[0] - b->v_mps[0],
-               .vy_mps = a->v_mps[1] - b->v_mps[1],
-               .vz_mps = a->v_mps[2] - b->v_mps[2],
-               .ix_radps = a->w_radps[0],
-               .iy_radps = a->w_radps[1],
-               .iz_radps = a->w_radps[2],
-               .jx_radps = b->w_radps[0],
-               .jy_radps = b->w_radps[1],
-               .jz_radps = b->w_radps[2],
-        };
+        struct dig_kinematics kinematics =
+            dig_motion_between(&motion[list->i[c]], &motion[list->j[c]]);
+        kinematics.dy_m = dig_period_fold(kinematics.dy_m, world->period_y_m, inverse_period);
         struct dig_contact_history     history = dig_contacts_history(list, c);
         const struct dig_contact_force force   = dig_law_apply(&law, 0.0, &kinematics, &history);
         const double                   f_N[3]  = { force.fx_N, force.fy_N, force.fz_N };

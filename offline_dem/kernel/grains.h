@@ -6,6 +6,7 @@
 #define DIG_OFFLINE_DEM_KERNEL_GRAINS_H
 
 #include "core/status.h"
+#include "offline_dem/law/law.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,6 +22,27 @@ struct dig_motion {
     double v_mps[4];
     double w_radps[4];
 };
+
+/// Relative state of two grains that touch; x and z are not periodic, and y is not folded.
+DIG_BOTH static inline struct dig_kinematics dig_motion_between(const struct dig_motion *const i,
+                                                                const struct dig_motion *const j)
+{
+    const struct dig_kinematics between = {
+        i->x_m[0] - j->x_m[0],
+        i->x_m[1] - j->x_m[1],
+        i->x_m[2] - j->x_m[2],
+        i->v_mps[0] - j->v_mps[0],
+        i->v_mps[1] - j->v_mps[1],
+        i->v_mps[2] - j->v_mps[2],
+        i->w_radps[0],
+        i->w_radps[1],
+        i->w_radps[2],
+        j->w_radps[0],
+        j->w_radps[1],
+        j->w_radps[2],
+    };
+    return between;
+}
 
 /// Force and torque on a grain during one step.
 struct dig_load {

@@ -75,16 +75,7 @@ enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig
 
 struct dig_motion dig_ode_bed_motion(const struct dig_ode_bed *const bed, const size_t grain)
 {
-    struct dig_motion  motion = { 0 };
-    const dReal *const x      = dBodyGetPosition(bed->body[grain]);
-    const dReal *const v      = dBodyGetLinearVel(bed->body[grain]);
-    const dReal *const w      = dBodyGetAngularVel(bed->body[grain]);
-    for (int k = 0; k < 3; k++) {
-        motion.x_m[k]     = x[k];
-        motion.v_mps[k]   = v[k];
-        motion.w_radps[k] = w[k];
-    }
-    return motion;
+    return dig_ode_contacts_motion(bed->body[grain]);
 }
 
 static void add_grain(struct dig_ode_bed *const bed, const struct dig_grain_type *const type,

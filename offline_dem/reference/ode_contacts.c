@@ -1,37 +1,30 @@
 #include "offline_dem/reference/ode_contacts.h"
 
 #include "offline_dem/law/law_general.h"
-#include "offline_dem/reference/ode_plates.h"
+#include "offline_dem/shapes/plate_contacts.h"
 
-// Numbers of walls and rocks in the contact history, beyond any grain's.
-#define WALL_NUMBER 0xFFFF0000U
-#define ROCK_NUMBER 0xFFFF4000U
+// Numbers of walls, rocks and plates in the contact history, beyond any grain's.
+#define WALL_NUMBER  0xFFFF0000U
+#define ROCK_NUMBER  0xFFFF4000U
+#define PLATE_NUMBER 0xFFFF8000U
 
 static size_t index_of(dGeomID geom)
 {
     return (size_t)(uintptr_t)dGeomGetData(geom);
 }
 
-static void set_velocity(dBodyID i, dBodyID j, struct dig_kinematics *const t)
+struct dig_motion dig_ode_contacts_motion(dBodyID body)
 {
-    const dReal *const vi = dBodyGetLinearVel(i);
-    const dReal *const wi = dBodyGetAngularVel(i);
-    t->vx_mps             = vi[0];
-    t->vy_mps             = vi[1];
-    t->vz_mps             = vi[2];
-    t->ix_radps           = wi[0];
-    t->iy_radps           = wi[1];
-    t->iz_radps           = wi[2];
-    if (j != NULL) {
-        const dReal *const vj = dBodyGetLinearVel(j);
-        const dReal *const wj = dBodyGetAngularVel(j);
-        t->vx_mps -= vj[0];
-        t->vy_mps -= vj[1];
-        t->vz_mps -= vj[2];
-        t->jx_radps = wj[0];
-        t->jy_radps = wj[1];
-        t->jz_radps = wj[2];
+    struct dig_motion  motion = { 0 };
+    const dReal *const x      = dBodyGetPosition(body);
+    const dReal *const v      = dBodyGetLinearVel(body);
+    const dReal *const w      = dBodyGetAngularVel(body);
+    for (int k = 0; k < 3; k++) {
+        motion.x_m[k]     = x[k];
+        motion.v_mps[k]   = v[k];
+        motion.w_radps[k] = w[k];
     }
+    return motion;
 }
 
 // Loads on i, scaled by the fraction of a kick.
@@ -49,6 +42,14 @@ static void add_load_to_j(const struct dig_ode_bed *const bed, dBodyID j,
     const double s = bed->kick_fraction;
     dBodyAddForce(j, -s * p->fx_N, -s * p->fy_N, -s * p->fz_N);
     dBodyAddTorque(j, s * p->jx_Nm, s * p->jy_Nm, s * p->jz_Nm);
+}
+
+// Of two bodies at one place; NULL: one at rest.
+static struct dig_kinematics velocities(dBodyID i, dBodyID j)
+{
+    const struct dig_motion a = dig_ode_contacts_motion(i);
+    const struct dig_motion b = j != NULL ? dig_ode_contacts_motion(j) : (struct dig_motion){ 0 };
+    return dig_motion_between(&a, &b);
 }
 
 static void set_distance(struct dig_kinematics *const t, const dContactGeom *const c,
@@ -75,9 +76,8 @@ static struct dig_contact_history *begin_contact(struct dig_ode_bed *const bed, 
     struct dig_contact_history *const history =
         dig_ode_history_of(&bed->history, (uint32_t)i, other);
     bed->out_of_memory = bed->out_of_memory || history == NULL;
-    *kinematics        = (struct dig_kinematics){ 0 };
+    *kinematics        = velocities(bed->body[i], j);
     set_distance(kinematics, &contact, law->reach_m);
-    set_velocity(bed->body[i], j, kinematics);
     return history;
 }
 
@@ -172,18 +172,20 @@ void dig_ode_contacts_rock(void *const data, dGeomID a, dGeomID b)
 
 // One contact of a grain with the tool, at a given point with its history.
 static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const double body_m[3],
-                           struct dig_ode_plate_contact *const at)
+                           const double closest_m[3], struct dig_contact_history *const history)
 {
     double d[3];
     double arm_m[3];
     double v_mps[3];
-    dig_tool_separation(bed->tool, body_m, at->closest_m, d, arm_m, v_mps);
-    struct dig_kinematics kinematics = { .dx_m = d[0], .dy_m = d[1], .dz_m = d[2] };
-    set_velocity(bed->body[i], NULL, &kinematics);
+    dig_tool_separation(bed->tool, body_m, closest_m, d, arm_m, v_mps);
+    struct dig_kinematics kinematics = velocities(bed->body[i], NULL);
+    kinematics.dx_m                  = d[0];
+    kinematics.dy_m                  = d[1];
+    kinematics.dz_m                  = d[2];
     kinematics.vx_mps -= v_mps[0];
     kinematics.vz_mps -= v_mps[2];
     const struct dig_contact_force p =
-        dig_law_apply(&bed->tool_law[bed->type_of[i]], bed->dt_s, &kinematics, &at->history);
+        dig_law_apply(&bed->tool_law[bed->type_of[i]], bed->dt_s, &kinematics, history);
     add_load_to_i(bed, bed->body[i], &p);
     add_reaction(&p, arm_m, &bed->on_tool);
 }
@@ -191,18 +193,34 @@ static void add_plate_load(struct dig_ode_bed *const bed, const size_t i, const 
 // A grain in the box about the tool.
 void dig_ode_contacts_tool(void *const data, dGeomID a, dGeomID b)
 {
-    struct dig_ode_bed *const bed      = data;
-    const size_t              i        = index_of(a == bed->tool_box ? b : a);
-    const double              radius_m = bed->type[bed->type_of[i]].radius_m;
-    double                    body_m[3];
-    dig_tool_to_body(bed->tool, dBodyGetPosition(bed->body[i]), body_m);
-    struct dig_ode_plate_contact at[DIG_PLATES_MAX];
-    const size_t                 touches =
-        dig_ode_plates_find(bed->tool, body_m, radius_m, (uint32_t)i, &bed->history, at);
-    for (size_t k = 0; k < touches; k++) {
-        add_plate_load(bed, i, body_m, &at[k]);
-        if (!dig_ode_plates_store(&at[k], (uint32_t)i, &bed->history)) {
-            bed->out_of_memory = true;
+    struct dig_ode_bed *const    bed      = data;
+    const struct dig_tool *const tool     = bed->tool;
+    const size_t                 i        = index_of(a == bed->tool_box ? b : a);
+    const double                 radius_m = bed->type[bed->type_of[i]].radius_m;
+    double                       body_m[3];
+    struct dig_plate_contacts    near;
+    near.count = 0;
+    dig_tool_to_body(tool, dBodyGetPosition(bed->body[i]), body_m);
+    for (size_t plate = 0; plate < tool->plates; plate++) {
+        if (!dig_plate_contacts_add(&tool->bucket, plate, body_m, radius_m, &near)) {
+            near.count--;
+            continue;
+        }
+        const struct dig_contact_history *const was =
+            dig_ode_history_previous(&bed->history, (uint32_t)i, PLATE_NUMBER + (uint32_t)plate);
+        near.history[near.count - 1] = was != NULL ? *was : (struct dig_contact_history){ 0 };
+    }
+    dig_plate_contacts_resolve(&tool->bucket, radius_m, &near);
+    for (size_t k = 0; k < near.count; k++) {
+        if (!near.touched[k]) {
+            continue;
+        }
+        add_plate_load(bed, i, body_m, near.closest_m[k], &near.history[k]);
+        struct dig_contact_history *const kept =
+            dig_ode_history_of(&bed->history, (uint32_t)i, PLATE_NUMBER + (uint32_t)near.plate[k]);
+        bed->out_of_memory = bed->out_of_memory || kept == NULL;
+        if (kept != NULL) {
+            *kept = near.history[k];
         }
     }
 }

@@ -50,4 +50,7 @@ void dig_ode_contacts_wall(void *data, dGeomID a, dGeomID b);
 void dig_ode_contacts_rock(void *data, dGeomID a, dGeomID b);
 void dig_ode_contacts_tool(void *data, dGeomID a, dGeomID b);
 
+/// Motion of a body as a grain has it.
+struct dig_motion dig_ode_contacts_motion(dBodyID body);
+
 #endif // DIG_OFFLINE_DEM_REFERENCE_ODE_CONTACTS_H

@@ -83,16 +83,8 @@ void dig_bodies_destroy(struct dig_bodies *const bodies)
     if (bodies == NULL) {
         return;
     }
-    dig_obstacles_finish(&bodies->obstacles);
     free(bodies->clump);
     free(bodies);
-}
-
-enum dig_status dig_bodies_detect(struct dig_world *const world)
-{
-    return world->bodies->obstacles.rocks == 0
-               ? DIG_OK
-               : dig_obstacles_detect(&world->bodies->obstacles, world);
 }
 
 static void step_clump(struct dig_world *const world, const struct dig_clump_shape *const shape,
@@ -162,5 +154,4 @@ void dig_bodies_renumber(struct dig_bodies *const bodies, const uint32_t new_ind
             clump->gone      = clump->member[k] == UINT32_MAX;
         }
     }
-    dig_obstacles_renumber(&bodies->obstacles, new_index);
 }

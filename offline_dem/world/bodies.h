@@ -34,8 +34,11 @@ dig_bodies_create(const struct dig_scene *scene, const struct dig_bed *bed,
 /// NULL is allowed.
 void dig_bodies_destroy(struct dig_bodies *bodies);
 
-/// Contact detection between grains and obstacles, after that of pairs and surfaces. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_bodies_detect(struct dig_world *world);
+/// Rocks among them. NULL: 0.
+static inline size_t dig_bodies_rocks(const struct dig_bodies *const bodies)
+{
+    return bodies != NULL ? bodies->obstacles.rocks : 0;
+}
 
 /// Adds the loads of obstacles, steps every clump under the loads of its spheres, and sets their
 /// velocities so that the kernel moves them with the clump. After the loads of pairs, walls and

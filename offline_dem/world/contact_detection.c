@@ -3,6 +3,7 @@
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/law/period.h"
 #include "offline_dem/shapes/bucket_surface.h"
+#include "offline_dem/world/bodies.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,13 +35,13 @@ static void swap_lists(const enum dig_status status, const size_t lists, struct 
     }
 }
 
-// Lists of a bed with so many slabs, one for each pair of its grain types, or two for each type.
+// Lists of a bed with so many slabs, one for each pair of its grain types, or three for each type.
 static enum dig_status set_slabs(const struct dig_grains *const grains, const bool pairs,
                                  struct dig_contacts list[])
 {
     enum dig_status status = DIG_OK;
     for (size_t a = 0; a < grains->types && status == DIG_OK; a++) {
-        for (size_t b = pairs ? a : 0; b < (pairs ? grains->types : 2) && status == DIG_OK; b++) {
+        for (size_t b = pairs ? a : 0; b < (pairs ? grains->types : 3) && status == DIG_OK; b++) {
             const size_t l = pairs ? a * DIG_GRAIN_TYPES_MAX + b : b * DIG_GRAIN_TYPES_MAX + a;
             status         = dig_contacts_set_slabs(&list[l], grains->slabs.count);
         }
@@ -226,11 +227,13 @@ enum dig_status dig_contact_detection_pairs(struct dig_world *const w)
 }
 
 static enum dig_status add_surface(struct dig_world *const w, const uint32_t i,
-                                   const size_t surface, const uint32_t old_index[])
+                                   const uint32_t number, const uint32_t old_index[])
 {
-    const size_t l = w->grains.type_of[i] + (surface < w->walls ? 0U : (size_t)DIG_GRAIN_TYPES_MAX);
-    const uint32_t old = old_index[surface];
-    return dig_contacts_add(&w->detection.surface[l], i, (uint32_t)surface, (uint32_t)surface,
+    const size_t   l   = w->grains.type_of[i] + (number < DIG_FIRST_PLATE  ? 0
+                                                 : number < DIG_FIRST_ROCK ? DIG_PLATE_LISTS
+                                                                           : DIG_ROCK_LISTS);
+    const uint32_t old = old_index[dig_world_surface(w, number)];
+    return dig_contacts_add(&w->detection.surface[l], i, number, number,
                             old == DIG_NO_SLOT ? NULL : &w->surface[l], old);
 }
 
@@ -239,7 +242,7 @@ static enum dig_status detect_walls(struct dig_world *const w, const uint32_t i,
 {
     const double *const x      = dig_grains_position(&w->grains, i);
     enum dig_status     status = DIG_OK;
-    for (size_t s = 0; s < w->walls && status == DIG_OK; s++) {
+    for (uint32_t s = 0; s < w->walls && status == DIG_OK; s++) {
         const double *const n = w->wall[s].normal;
         if (n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - w->wall[s].offset_m < reach_m) {
             status = add_surface(w, i, s, old_index);
@@ -263,12 +266,26 @@ static enum dig_status detect_plates(struct dig_world *const w, const uint32_t i
     enum dig_status status = DIG_OK;
     double          body_m[3];
     dig_tool_to_body(tool, x, body_m);
-    for (size_t p = 0; p < tool->plates && status == DIG_OK; p++) {
+    for (uint32_t p = 0; p < tool->plates && status == DIG_OK; p++) {
         double c[3];
         dig_bucket_closest(&tool->bucket, p, body_m, c);
         const double d[3] = { body_m[0] - c[0], body_m[1] - c[1], body_m[2] - c[2] };
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach_m * reach_m) {
-            status = add_surface(w, i, w->walls + p, old_index);
+            status = add_surface(w, i, DIG_FIRST_PLATE + p, old_index);
+        }
+    }
+    return status;
+}
+
+static enum dig_status detect_rocks(struct dig_world *const w, const uint32_t i,
+                                    const double reach_m, const uint32_t old_index[])
+{
+    const struct dig_obstacles *const o      = &w->bodies->obstacles;
+    const double *const               x      = dig_grains_position(&w->grains, i);
+    enum dig_status                   status = DIG_OK;
+    for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
+        if (dig_obstacles_is_near(o, w, r, x, reach_m)) {
+            status = add_surface(w, i, DIG_FIRST_ROCK + r, old_index);
         }
     }
     return status;
@@ -279,9 +296,9 @@ static void index_surfaces(struct dig_world *const w, const size_t surfaces, con
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
         const struct dig_contacts *const list = &w->surface[l];
         for (size_t c = 0; c < list->n; c++) {
-            // The list may hold plates of a tool that has been removed.
-            if (list->j[c] < surfaces) {
-                w->detection.old_surface[list->i[c] * surfaces + list->j[c]] =
+            const size_t surface = dig_world_surface(w, list->j[c]);
+            if (surface < surfaces) {
+                w->detection.old_surface[list->i[c] * surfaces + surface] =
                     clear ? UINT32_MAX : (uint32_t)c;
             }
         }
@@ -291,7 +308,8 @@ static void index_surfaces(struct dig_world *const w, const size_t surfaces, con
 enum dig_status dig_contact_detection_surfaces(struct dig_world *const w)
 {
     const struct dig_grains *const g        = &w->grains;
-    const size_t                   surfaces = w->walls + (w->tool != NULL ? w->tool->plates : 0);
+    const size_t                   rocks    = dig_bodies_rocks(w->bodies);
+    const size_t                   surfaces = dig_world_surface(w, DIG_FIRST_ROCK) + rocks;
     if (make_room(&w->detection.old_surface, &w->detection.surface_room, g->n * surfaces + 1) !=
         DIG_OK) {
         return DIG_ENOMEM;
@@ -301,6 +319,9 @@ enum dig_status dig_contact_detection_surfaces(struct dig_world *const w)
         return status;
     }
     index_surfaces(w, surfaces, false);
+    if (rocks > 0) {
+        dig_obstacles_set_margins(&w->bodies->obstacles, w->dt_s);
+    }
     for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
         if (i % g->slabs.grains == 0) {
             begin_slab(DIG_SURFACE_LISTS, i / g->slabs.grains, w->detection.surface);
@@ -310,6 +331,9 @@ enum dig_status dig_contact_detection_surfaces(struct dig_world *const w)
         status                          = detect_walls(w, i, reach_m, old_index);
         if (w->tool != NULL && status == DIG_OK) {
             status = detect_plates(w, i, reach_m + w->tool_margin_m, old_index);
+        }
+        if (rocks > 0 && status == DIG_OK) {
+            status = detect_rocks(w, i, reach_m, old_index);
         }
     }
     begin_slab(DIG_SURFACE_LISTS, g->slabs.count, w->detection.surface);

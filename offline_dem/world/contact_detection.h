@@ -10,7 +10,7 @@
 /// lists as they were.
 DIG_MUST_CHECK enum dig_status dig_contact_detection_pairs(struct dig_world *world);
 
-/// Grains with walls and plates of the tool, likewise.
+/// Grains with walls, plates of the tool and rocks, likewise.
 DIG_MUST_CHECK enum dig_status dig_contact_detection_surfaces(struct dig_world *world);
 
 void dig_contact_detection_finish(struct dig_contact_detection *detection);

@@ -201,16 +201,15 @@ static void write_pairs(struct copy *const copy)
     }
 }
 
-// Contacts of one list with surfaces; surface j of the list has number first + j, if it is less
-// than end: a wall or a tool that is gone touches nothing.
-static void write_list(const struct dig_contacts *const list, const uint32_t first,
-                       const uint32_t end, const struct dig_device_view *const v)
+// A wall or a tool that is gone touches nothing.
+static void write_list(const struct dig_world *const w, const struct dig_contacts *const list,
+                       const struct dig_device_view *const v)
 {
     for (size_t c = 0; c < list->n; c++) {
         const uint32_t i = list->i[c];
-        const uint32_t s = first + list->j[c];
-        if (s < end) {
-            v->surface_history[(size_t)s * v->n + i] = dig_contacts_history(list, c);
+        const size_t   s = dig_world_surface(w, list->j[c]);
+        if (s < v->surfaces) {
+            v->surface_history[s * v->n + i] = dig_contacts_history(list, c);
             v->surface_mask[i] |= (uint64_t)1 << s;
         }
     }
@@ -228,16 +227,10 @@ static void clear_surfaces(void *const context, const size_t first, const size_t
 
 static void write_surfaces(struct copy *const copy)
 {
-    const struct dig_world *const       w     = copy->world;
-    const struct dig_device_view *const v     = copy->view;
-    const uint32_t                      rocks = v->walls + v->plates;
-    dig_crew_each(w->crew, v->n, clear_surfaces, copy);
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        write_list(&w->surface[k], 0, v->walls, v);
-        write_list(&w->surface[DIG_GRAIN_TYPES_MAX + k], 0, rocks, v);
-        if (w->bodies != NULL) {
-            write_list(&w->bodies->obstacles.contact[k], rocks, v->surfaces, v);
-        }
+    const struct dig_world *const w = copy->world;
+    dig_crew_each(w->crew, copy->view->n, clear_surfaces, copy);
+    for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
+        write_list(w, &w->surface[l], copy->view);
     }
 }
 

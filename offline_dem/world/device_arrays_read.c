@@ -113,15 +113,12 @@ static enum dig_status read_surfaces(const struct dig_device_view *const v,
             if ((v->surface_mask[i] >> s & 1) == 0) {
                 continue;
             }
-            const size_t               type  = v->type_of[i];
-            const bool                 plate = s >= v->walls && s < rocks;
-            struct dig_contacts *const list =
-                s >= rocks ? &w->bodies->obstacles.contact[type]
-                           : &w->surface[(plate ? DIG_GRAIN_TYPES_MAX : 0) + type];
-            const uint32_t j = s >= rocks ? s - rocks
-                               : plate    ? (uint32_t)w->walls + s - v->walls
-                                          : s;
-            status           = append(list, i, j, &v->surface_history[(size_t)s * v->n + i]);
+            const size_t   first  = s < v->walls ? 0 : s < rocks ? DIG_PLATE_LISTS : DIG_ROCK_LISTS;
+            const uint32_t number = s < v->walls ? s
+                                    : s < rocks  ? DIG_FIRST_PLATE + s - v->walls
+                                                 : DIG_FIRST_ROCK + s - rocks;
+            status                = append(&w->surface[first + v->type_of[i]], i, number,
+                                           &v->surface_history[(size_t)s * v->n + i]);
         }
     }
     return status;
@@ -132,9 +129,6 @@ static void clear_surface_lists(struct dig_world *const w)
 {
     for (size_t l = 0; l < DIG_SURFACE_LISTS; l++) {
         w->surface[l].n = 0;
-    }
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX && w->bodies != NULL; k++) {
-        w->bodies->obstacles.contact[k].n = 0;
     }
 }
 

@@ -257,9 +257,6 @@ enum dig_status dig_lists_update(struct dig_world *const w)
     if (status == DIG_OK) {
         status = dig_contact_detection_surfaces(w);
     }
-    if (status == DIG_OK && w->bodies != NULL) {
-        status = dig_bodies_detect(w);
-    }
     if (status == DIG_OK) {
         w->stale = false;
         w->contact_rebuilds++;

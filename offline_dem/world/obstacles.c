@@ -5,7 +5,6 @@
 #include "offline_dem/law/period.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // Margin of a rock: a share of its smallest half edge, and so many steps of its speed.
@@ -85,7 +84,7 @@ static double turning_radius_m(const struct dig_rock_surface *const rock)
     return rock->shape == DIG_OBSTACLE_BOX ? length(rock->half_m) : 0.0;
 }
 
-static void set_margins(struct dig_obstacles *const o, const double dt_s)
+void dig_obstacles_set_margins(struct dig_obstacles *const o, const double dt_s)
 {
     for (size_t r = 0; r < o->rocks; r++) {
         const struct dig_rock *const rock    = &o->rock[r];
@@ -116,48 +115,14 @@ bool dig_obstacles_left_margin(const struct dig_obstacles *const o)
     return false;
 }
 
-enum dig_status dig_obstacles_detect(struct dig_obstacles *const   o,
-                                     const struct dig_world *const world)
+bool dig_obstacles_is_near(const struct dig_obstacles *const o, const struct dig_world *const world,
+                           const size_t rock, const double x_m[], const double reach_m)
 {
-    set_margins(o, world->dt_s);
-    const struct dig_grains *const g   = &world->grains;
-    uint32_t *const                old = malloc((g->n * o->rocks + 1) * sizeof *old);
-    if (old == NULL) {
-        return DIG_ENOMEM;
-    }
-    memset(old, 0xff, g->n * o->rocks * sizeof *old);
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        for (size_t c = 0; c < o->contact[k].n; c++) {
-            old[o->contact[k].i[c] * o->rocks + o->contact[k].j[c]] = (uint32_t)c;
-        }
-    }
-    struct dig_contacts fresh[DIG_GRAIN_TYPES_MAX] = { 0 };
-    enum dig_status     status                     = DIG_OK;
-    for (uint32_t i = 0; i < g->n && status == DIG_OK; i++) {
-        const size_t type    = g->type_of[i];
-        const double reach_m = g->type[type].radius_m + world->reference_m[i][3];
-        for (uint32_t r = 0; r < o->rocks && status == DIG_OK; r++) {
-            double closest_m[3];
-            double image_m[3];
-            nearest_image(world, &o->rock[r].surface, dig_grains_position(g, i), image_m);
-            if (dig_rock_surface_closest(&o->rock[r].surface, image_m, closest_m) <
-                reach_m + o->margin_m[r]) {
-                const uint32_t at = old[i * o->rocks + r];
-                status            = dig_contacts_add(&fresh[type], i, r, r,
-                                          at == UINT32_MAX ? NULL : &o->contact[type], at);
-            }
-        }
-    }
-    free(old);
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        if (status == DIG_OK) {
-            dig_contacts_finish(&o->contact[k]);
-            o->contact[k] = fresh[k];
-        } else {
-            dig_contacts_finish(&fresh[k]);
-        }
-    }
-    return status;
+    double closest_m[3];
+    double image_m[3];
+    nearest_image(world, &o->rock[rock].surface, x_m, image_m);
+    return dig_rock_surface_closest(&o->rock[rock].surface, image_m, closest_m) <
+           reach_m + o->margin_m[rock];
 }
 
 static void fill_block(const struct dig_world *const world, const struct dig_rock *const rock,
@@ -193,7 +158,7 @@ static void apply_block(struct dig_world *const world, struct dig_obstacles *con
         const double on_grain[3] = { block->out[3][c], block->out[4][c], block->out[5][c] };
         const double t[3]        = { block->out[6][c], block->out[7][c], block->out[8][c] };
         dig_grains_add_load(&world->grains, list->i[first + c], f, on_grain);
-        dig_wrench_react(f, t, arm_m[c], &o->rock[list->j[first + c]].load);
+        dig_wrench_react(f, t, arm_m[c], &o->rock[list->j[first + c] - DIG_FIRST_ROCK].load);
     }
 }
 
@@ -203,7 +168,7 @@ void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *co
         o->rock[r].load = (struct dig_wrench){ 0 };
     }
     for (size_t type = 0; type < world->grains.types; type++) {
-        struct dig_contacts *const list     = &o->contact[type];
+        struct dig_contacts *const list     = &world->surface[DIG_ROCK_LISTS + type];
         const double               radius_m = world->grains.type[type].radius_m;
         for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
             const size_t     left  = list->n - first;
@@ -212,28 +177,12 @@ void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *co
             double           arm_m[DIG_BLOCK][3];
             for (size_t c = 0; c < count; c++) {
                 const struct dig_motion m = dig_grains_motion(&world->grains, list->i[first + c]);
-                fill_block(world, &o->rock[list->j[first + c]], &m, radius_m, c, &block, arm_m[c]);
+                fill_block(world, &o->rock[list->j[first + c] - DIG_FIRST_ROCK], &m, radius_m, c,
+                           &block, arm_m[c]);
             }
             dig_kernel_block(world->isa, &world->wall_law[type], world->dt_s, list, first, count,
                              &block);
             apply_block(world, o, list, first, count, &block, (const double(*)[3])arm_m);
         }
-    }
-}
-
-void dig_obstacles_renumber(struct dig_obstacles *const o, const uint32_t new_index[])
-{
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        dig_contacts_renumber(&o->contact[k], false, new_index);
-    }
-}
-
-void dig_obstacles_finish(struct dig_obstacles *const obstacles)
-{
-    if (obstacles == NULL) {
-        return;
-    }
-    for (size_t k = 0; k < DIG_GRAIN_TYPES_MAX; k++) {
-        dig_contacts_finish(&obstacles->contact[k]);
     }
 }

@@ -18,9 +18,8 @@ struct dig_rock {
 };
 
 struct dig_obstacles {
-    size_t              rocks;
-    struct dig_rock     rock[DIG_OBSTACLES_MAX];
-    struct dig_contacts contact[DIG_GRAIN_TYPES_MAX]; // of each grain type; j is the rock
+    size_t          rocks;
+    struct dig_rock rock[DIG_OBSTACLES_MAX];
 
     // Pose of each rock at the last contact detection, and the displacement of its surface that
     // these contacts cover.
@@ -28,7 +27,7 @@ struct dig_obstacles {
     double                  margin_m[DIG_OBSTACLES_MAX];
 };
 
-/// The scene's obstacles where the scene has them. Owns nothing yet.
+/// The scene's obstacles where the scene has them.
 struct dig_obstacles dig_obstacles_make(const struct dig_scene *scene);
 
 /// Copies the rocks' poses from the bed, and to it.
@@ -38,14 +37,18 @@ void dig_obstacles_save_poses(const struct dig_obstacles *obstacles, struct dig_
 /// Half its smallest edge, or its radius.
 double dig_rock_least_half_m(const struct dig_rock_surface *rock);
 
-/// As the functions of offline_dem/world/bodies.h.
-DIG_MUST_CHECK enum dig_status dig_obstacles_detect(struct dig_obstacles   *obstacles,
-                                                    const struct dig_world *world);
+/// Before contact detection: what displacement of the rocks it has to cover.
+void dig_obstacles_set_margins(struct dig_obstacles *obstacles, double dt_s);
+
+/// Whether a rock, in any image, may come within reach_m of a grain at x_m before the next
+/// detection.
+bool dig_obstacles_is_near(const struct dig_obstacles *obstacles, const struct dig_world *world,
+                           size_t rock, const double x_m[], double reach_m);
+
 /// Whether a rock has left its margin: contacts with it may be missing.
 bool dig_obstacles_left_margin(const struct dig_obstacles *obstacles);
-void dig_obstacles_add_loads(struct dig_obstacles *obstacles, struct dig_world *world);
-void dig_obstacles_renumber(struct dig_obstacles *obstacles, const uint32_t new_index[]);
 
-void dig_obstacles_finish(struct dig_obstacles *obstacles);
+/// Adds the loads of the world's contacts with rocks to the grains and the rocks.
+void dig_obstacles_add_loads(struct dig_obstacles *obstacles, struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_WORLD_OBSTACLES_H

@@ -1,72 +1,11 @@
 #include "offline_dem/world/surfaces.h"
 
-#include "offline_dem/shapes/bucket_surface.h"
+#include "offline_dem/shapes/plate_contacts.h"
 
 #include <math.h>
 #include <string.h>
 
 #define FAR_m 1e9 // distance that means no contact
-
-// Candidate plates of a grain, consecutive in the list.
-struct near_plates {
-    size_t count;
-    size_t contact[DIG_PLATES_MAX];
-    size_t plate[DIG_PLATES_MAX];
-    double closest_m[DIG_PLATES_MAX][3]; // body frame
-    double distance_m[DIG_PLATES_MAX];
-    bool   is_contact[DIG_PLATES_MAX];
-};
-
-static bool has_history(const struct dig_contacts *const list, const size_t c)
-{
-    for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        if (fabs(list->history[m][c]) > 0.0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// Moves the history of `from` to `to`, unless that has one.
-static void move_history(struct dig_contacts *const list, const size_t from, const size_t to)
-{
-    if (!has_history(list, to)) {
-        for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-            list->history[m][to]   = list->history[m][from];
-            list->history[m][from] = 0.0;
-        }
-    }
-}
-
-// Leaves the local minima of the distance to the whole tool.
-static void resolve_edges(const struct dig_tool *const tool, const double radius_m,
-                          struct near_plates *const near, struct dig_contacts *const list)
-{
-    const double same_m = 1e-6 * radius_m;
-    for (size_t p = 0; p < near->count; p++) {
-        for (size_t q = 0; q < near->count && near->is_contact[p]; q++) {
-            if (q == p || !near->is_contact[q] ||
-                near->distance_m[q] > near->distance_m[p] + same_m) {
-                continue;
-            }
-            // Does p's closest point lie on q as well?
-            double on_q[3];
-            dig_bucket_closest(&tool->bucket, near->plate[q], near->closest_m[p], on_q);
-            if (dig_bucket_distance(on_q, near->closest_m[p]) > same_m) {
-                continue;
-            }
-            // On a tie the contact stays with the plate that had it; else with the first.
-            const bool tie = near->distance_m[q] > near->distance_m[p] - same_m;
-            if (tie && (has_history(list, near->contact[p]) ||
-                        (!has_history(list, near->contact[q]) && p < q))) {
-                near->is_contact[q] = false;
-                continue;
-            }
-            move_history(list, near->contact[p], near->contact[q]);
-            near->is_contact[p] = false;
-        }
-    }
-}
 
 static void fill_contact(struct dig_block *const block, const size_t c,
                          const struct dig_motion *const m, const double d[3], const double v[3])
@@ -79,15 +18,17 @@ static void fill_contact(struct dig_block *const block, const size_t c,
     }
 }
 
-// One contact with the tool; keeps the arm from the pin to the contact point for the moment.
-static void fill_plate(const struct dig_tool *const tool, const double body_m[3],
-                       const double closest_m[3], const struct dig_motion *const m, const size_t c,
-                       struct dig_block *const block, double arm_m[3])
+// Settles which of a grain's plates are contacts, those of the list from first on.
+static void resolve(const struct dig_tool *const tool, const double radius_m, const size_t first,
+                    struct dig_plate_contacts *const near, struct dig_contacts *const list)
 {
-    double d[3];
-    double v[3];
-    dig_tool_separation(tool, body_m, closest_m, d, arm_m, v);
-    fill_contact(block, c, m, d, v);
+    for (size_t k = 0; k < near->count; k++) {
+        near->history[k] = dig_contacts_history(list, first + k);
+    }
+    dig_plate_contacts_resolve(&tool->bucket, radius_m, near);
+    for (size_t k = 0; k < near->count; k++) {
+        dig_contacts_set_history(list, first + k, near->history[k]);
+    }
 }
 
 // Candidates of one grain, contacts c … of the list; returns how many.
@@ -96,38 +37,30 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
-    const uint32_t          i = list->i[first + c];
-    const struct dig_motion m = dig_grains_motion(&w->grains, i);
-    struct near_plates      near;
-    double                  body_m[3];
+    const uint32_t            i = list->i[first + c];
+    const struct dig_motion   m = dig_grains_motion(&w->grains, i);
+    struct dig_plate_contacts near;
+    double                    body_m[3];
     dig_tool_to_body(w->tool, m.x_m, body_m);
-    size_t used   = 0;
-    size_t in_use = 0;
-    while (c + used < count && list->i[first + c + used] == i) {
-        const size_t k     = used;
-        const size_t plate = list->j[first + c + k] - w->walls;
-        dig_bucket_closest(&w->tool->bucket, plate, body_m, near.closest_m[k]);
-        near.contact[k]    = first + c + k;
-        near.plate[k]      = plate;
-        near.distance_m[k] = dig_bucket_distance(body_m, near.closest_m[k]);
-        near.is_contact[k] = near.distance_m[k] < radius_m;
-        in_use += near.is_contact[k];
-        used++;
+    near.count     = 0;
+    size_t touched = 0;
+    while (c + near.count < count && list->i[first + c + near.count] == i) {
+        const size_t plate = list->j[first + c + near.count] - DIG_FIRST_PLATE;
+        touched += dig_plate_contacts_add(&w->tool->bucket, plate, body_m, radius_m, &near);
     }
-    near.count = used;
-    if (in_use > 1) {
-        resolve_edges(w->tool, radius_m, &near, list);
+    if (touched > 1) {
+        resolve(w->tool, radius_m, first + c, &near, list);
     }
-    for (size_t k = 0; k < used; k++) {
-        if (near.is_contact[k]) {
-            fill_plate(w->tool, body_m, near.closest_m[k], &m, c + k, block, arm_m[c + k]);
-        } else {
-            fill_contact(block, c + k, &m, (const double[3]){ FAR_m, 0.0, 0.0 },
-                         (const double[3]){ 0.0, 0.0, 0.0 });
-            memset(arm_m[c + k], 0, sizeof arm_m[c + k]);
+    for (size_t k = 0; k < near.count; k++) {
+        double v[3] = { 0.0, 0.0, 0.0 };
+        double d[3] = { FAR_m, 0.0, 0.0 };
+        memset(arm_m[c + k], 0, sizeof arm_m[c + k]);
+        if (near.touched[k]) {
+            dig_tool_separation(w->tool, body_m, near.closest_m[k], d, arm_m[c + k], v);
         }
+        fill_contact(block, c + k, &m, d, v);
     }
-    return used;
+    return near.count;
 }
 
 static void add_loads(struct dig_world *const w, const struct dig_contacts *const list,
@@ -166,7 +99,7 @@ static size_t block_length(const struct dig_contacts *const list, const size_t f
 static void step_plates(struct dig_world *const w, const size_t type, const size_t slab,
                         struct dig_wrench *const on_tool)
 {
-    struct dig_contacts *const list     = &w->surface[DIG_GRAIN_TYPES_MAX + type];
+    struct dig_contacts *const list     = &w->surface[DIG_PLATE_LISTS + type];
     const double               radius_m = w->grains.type[type].radius_m;
     const size_t               end      = dig_contacts_slab_first(list, slab + 1);
     for (size_t first = dig_contacts_slab_first(list, slab); first < end;) {

@@ -22,8 +22,16 @@ struct dig_crew;
 struct dig_ode_scene;
 struct dig_world;
 
-#define DIG_PAIR_LISTS    ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
-#define DIG_SURFACE_LISTS ((size_t)2 * DIG_GRAIN_TYPES_MAX)
+#define DIG_PAIR_LISTS ((size_t)DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX)
+
+// Lists of grain types with surfaces: walls from 0 on, then plates of the tool, then rocks.
+#define DIG_PLATE_LISTS   ((size_t)DIG_GRAIN_TYPES_MAX)
+#define DIG_ROCK_LISTS    ((size_t)2 * DIG_GRAIN_TYPES_MAX)
+#define DIG_SURFACE_LISTS ((size_t)3 * DIG_GRAIN_TYPES_MAX)
+
+// Numbers of surfaces in these lists, which do not depend on what else is there.
+#define DIG_FIRST_PLATE DIG_WALLS_MAX
+#define DIG_FIRST_ROCK  (DIG_FIRST_PLATE + DIG_PLATES_MAX)
 
 /// Work memory of contact_detection.c: the place of each pair and surface in the lists under
 /// replacement (UINT32_MAX in between), and the new lists.
@@ -98,8 +106,7 @@ struct dig_world {
     struct dig_neighbours neighbours;
     struct dig_contacts
         pair[DIG_GRAIN_TYPES_MAX * DIG_GRAIN_TYPES_MAX]; // type_i * TYPES_MAX + type_j
-    struct dig_contacts surface[DIG_SURFACE_LISTS];      // type with wall j; TYPES_MAX + type with
-                                                         // plate j - walls
+    struct dig_contacts          surface[DIG_SURFACE_LISTS];
     struct dig_contact_detection detection;
     double (*reference_m)[4]; // [n] position at the last contact detection, and margin
     size_t          reference_room;
@@ -108,6 +115,21 @@ struct dig_world {
     bool            stale;
     size_t          list_rebuilds, contact_rebuilds; // counts, for tuning
 };
+
+/// Place of a surface, by its number, among those that are there: walls, plates, rocks. SIZE_MAX: a
+/// wall or a tool that is gone.
+static inline size_t dig_world_surface(const struct dig_world *const world, const uint32_t number)
+{
+    const size_t plates = world->tool != NULL ? world->tool->plates : 0;
+    if (number < DIG_FIRST_PLATE) {
+        return number < world->walls ? number : SIZE_MAX;
+    }
+    if (number < DIG_FIRST_ROCK) {
+        const size_t plate = number - DIG_FIRST_PLATE;
+        return plate < plates ? world->walls + plate : SIZE_MAX;
+    }
+    return world->walls + plates + number - DIG_FIRST_ROCK;
+}
 
 /// Takes over *grains. The caller fills the fixed fields of a zeroed *world; the laws before the
 /// first step.
