@@ -153,7 +153,7 @@ $(BUILD)/closed_loop/%.o:   CFLAGS += -O3
 $(BUILD)/estimator/match/likelihood.o: CPPFLAGS += -fno-math-errno
 # What the numbers of a dig depend on, told apart in every run of a table.
 numerics_src := $(filter-out offline_dem/dig/vtk.% offline_dem/dig/checked_pour.%,$(wildcard $(foreach r,law shapes kernel world dig,offline_dem/$r/*.[ch])) \
-                $(filter-out %_cuda.c %_cuda.h,$(wildcard offline_dem/device/*.[ch])) $(wildcard offline_dem/cuda/*.cu)) $(wildcard core/scene*.[ch] core/contact.[ch] core/curve.[ch] core/units.h)
+                $(filter-out %_cuda.c %_cuda.h,$(wildcard offline_dem/device/*.[ch])) $(wildcard offline_dem/cuda/*.cu)) $(wildcard core/scene*.[ch] core/contact.[ch] core/curve.[ch] core/chance.[ch] core/units.h)
 numerics      = $(shell { cat $(sort $(numerics_src)); echo '$(CC) $(STD) $(CFLAGS)'; $(CC) -dumpfullversion -dumpmachine; } \
                 | sha256sum | cut -c1-12)
 $(BUILD)/offline_dem/sweep/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'

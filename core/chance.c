@@ -20,6 +20,11 @@ double dig_chance_uniform(uint64_t *const state)
     return (double)(next(state) >> 11) * 0x1.0p-53;
 }
 
+double dig_chance_between(uint64_t *const state, const double low, const double high)
+{
+    return low + (high - low) * dig_chance_uniform(state);
+}
+
 double dig_chance_normal(uint64_t *const state)
 {
     const double u = 1.0 - dig_chance_uniform(state);

@@ -9,6 +9,9 @@
 /// Uniform in [0, 1) (splitmix64; *state moves on).
 double dig_chance_uniform(uint64_t *state);
 
+/// Uniform in [low, high).
+double dig_chance_between(uint64_t *state, double low, double high);
+
 /// Standard normal.
 double dig_chance_normal(uint64_t *state);
 

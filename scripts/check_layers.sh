@@ -41,7 +41,7 @@ estimator/match        depth match pool | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
 tables/schema          | canonical_scene schema seal
 tables                 derive export listed load merge queue scene store
-offline_dem/law        | both law law_general period random rigid wall
+offline_dem/law        | both law law_general period rigid wall
 offline_dem/shapes     | bucket_surface clump plate_contacts rock_surface tool
 offline_dem/kernel     | cell_grid clump_body contacts crew grains kernel neighbour
 offline_dem/world      | bodies device grain_types obstacles ode_rocks ode_scene offloaded world

@@ -1,9 +1,9 @@
 #include "offline_dem/dig/packing.h"
 
+#include "core/chance.h"
 #include "core/ground.h"
 #include "core/units.h"
 #include "offline_dem/dig/setup.h"
-#include "offline_dem/law/random.h"
 #include "offline_dem/law/rigid.h"
 #include "offline_dem/shapes/clump.h"
 #include "offline_dem/world/obstacles.h"
@@ -214,11 +214,11 @@ static bool is_free(const struct pouring *const p, const struct dig_bed *const b
 }
 
 // A uniform random rotation (Shoemake, Graphics Gems III).
-static void random_rotation(struct dig_random *const random, double q[4])
+static void random_rotation(uint64_t *const random, double q[4])
 {
-    const double u = dig_random_between(random, 0.0, 1.0);
-    const double a = dig_random_between(random, 0.0, 2.0 * DIG_PI);
-    const double b = dig_random_between(random, 0.0, 2.0 * DIG_PI);
+    const double u = dig_chance_between(random, 0.0, 1.0);
+    const double a = dig_chance_between(random, 0.0, 2.0 * DIG_PI);
+    const double b = dig_chance_between(random, 0.0, 2.0 * DIG_PI);
     q[0]           = sqrt(1.0 - u) * sin(a);
     q[1]           = sqrt(1.0 - u) * cos(a);
     q[2]           = sqrt(u) * sin(b);
@@ -227,12 +227,12 @@ static void random_rotation(struct dig_random *const random, double q[4])
 
 // One attempt to insert a body of this diameter: positions of its spheres. False when it overlaps.
 static bool try_body(const struct pouring *const p, const struct dig_bed *const bed,
-                     const double diameter_m, struct dig_random *const random, double at_m[][3])
+                     const double diameter_m, uint64_t *const random, double at_m[][3])
 {
     double centre_m[3];
     double q[4] = { 1.0, 0.0, 0.0, 0.0 };
     for (int a = 0; a < 3; a++) {
-        centre_m[a] = dig_random_between(random, p->low_m[a], p->high_m[a]);
+        centre_m[a] = dig_chance_between(random, p->low_m[a], p->high_m[a]);
     }
     if (p->shape.spheres > 0) {
         random_rotation(random, q);
@@ -277,8 +277,8 @@ static void insert_body(struct pouring *const p, struct dig_bed *const bed, cons
 static enum dig_status insert(struct pouring *const p, const uint64_t seed,
                               struct dig_bed *const bed)
 {
-    struct dig_random random = { .state = seed };
-    size_t            first  = 0;
+    uint64_t random = seed;
+    size_t   first  = 0;
     for (size_t c = 0; c < p->size_classes; c++) {
         for (size_t i = 0; i < p->size_class[c].bodies;) {
             double at_m[DIG_CLUMP_MAX][3];

@@ -25,17 +25,6 @@ enum dig_status dig_setup_check(const struct dig_scene *const  scene,
 // Counts of steps stay far below what an integer holds.
 #define LEAST_STEP_s 1e-12
 
-// Mass of each grain, or of its clump, in the bed's order.
-static double *body_masses(const struct dig_grain_types *const types, const uint8_t type_of[],
-                           const size_t n)
-{
-    double *const kg = malloc((n + 1) * sizeof *kg);
-    for (size_t i = 0; kg != NULL && i < n; i++) {
-        kg[i] = types->contact_kg[type_of[i]];
-    }
-    return kg;
-}
-
 static enum dig_status make_grains(const struct dig_scene *const       scene,
                                    const struct dig_bed *const         bed,
                                    const struct dig_clump_shape *const shape, const double fall_mps,
@@ -43,22 +32,17 @@ static enum dig_status make_grains(const struct dig_scene *const       scene,
                                    const uint8_t type_of[], struct dig_grains *const grains,
                                    struct dig_bodies **const bodies)
 {
-    double *const   kg     = body_masses(types, type_of, bed->grains);
-    enum dig_status status = DIG_ENOMEM;
-    if (kg != NULL) {
-        status = dig_grains_create(types->types, types->type, bed->grains, bed->x_m, bed->y_m,
-                                   bed->z_m, type_of, grains);
-    }
+    enum dig_status status = dig_grains_create(types->types, types->type, bed->grains, bed->x_m,
+                                               bed->y_m, bed->z_m, type_of, grains);
     if (status == DIG_OK) {
         for (size_t i = 0; i < bed->grains; i++) {
             grains->motion[i].v_mps[2] = -fall_mps;
         }
-        status = dig_bodies_create(scene, bed, shape, kg, fall_mps, grains, bodies);
+        status = dig_bodies_create(scene, bed, shape, types->contact_kg, fall_mps, grains, bodies);
         if (status != DIG_OK) {
             dig_grains_finish(grains);
         }
     }
-    free(kg);
     return status;
 }
 

@@ -39,9 +39,9 @@ static void place_clump(const double period_m, const struct dig_clump_shape *con
 
 enum dig_status dig_bodies_create(const struct dig_scene *const       scene,
                                   const struct dig_bed *const         bed,
-                                  const struct dig_clump_shape *const shape, const double body_kg[],
-                                  const double fall_mps, struct dig_grains *const grains,
-                                  struct dig_bodies **const bodies)
+                                  const struct dig_clump_shape *const shape,
+                                  const double clump_kg[], const double fall_mps,
+                                  struct dig_grains *const grains, struct dig_bodies **const bodies)
 {
     if (shape->spheres == 0 && scene->bed.obstacles == 0) {
         *bodies = NULL;
@@ -63,8 +63,8 @@ enum dig_status dig_bodies_create(const struct dig_scene *const       scene,
     dig_obstacles_load_poses(&made->obstacles, bed);
     for (size_t b = 0; b < clumps; b++) {
         const size_t first = b * shape->spheres;
-        place_clump(dig_scene_period_m(scene), shape, bed, first, body_kg[first], fall_mps,
-                    &clump[b]);
+        place_clump(dig_scene_period_m(scene), shape, bed, first, clump_kg[grains->type_of[first]],
+                    fall_mps, &clump[b]);
         for (size_t k = 0; k < shape->spheres; k++) {
             clump_of[first + k] = (uint32_t)(b + 1);
         }

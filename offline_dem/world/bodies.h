@@ -24,11 +24,11 @@ struct dig_bodies {
 };
 
 /// Bodies of a bed whose grain i has index i in the world, each clump falling at fall_mps;
-/// body_kg[grain] is the mass of its clump. Allocates and fills grains->clump. *bodies is NULL
-/// where there are none. DIG_ENOMEM.
+/// clump_kg[type] is the mass of the clump of a grain of that type. Allocates and fills
+/// grains->clump. *bodies is NULL where there are none. DIG_ENOMEM.
 DIG_MUST_CHECK enum dig_status
 dig_bodies_create(const struct dig_scene *scene, const struct dig_bed *bed,
-                  const struct dig_clump_shape *shape, const double body_kg[], double fall_mps,
+                  const struct dig_clump_shape *shape, const double clump_kg[], double fall_mps,
                   struct dig_grains *grains, struct dig_bodies **bodies);
 
 /// NULL is allowed.

@@ -8,8 +8,8 @@
 //                                  seconds that passed
 // Gravel and time step are those of config/scenes/rig.yaml.
 
+#include "core/chance.h"
 #include "offline_dem/kernel/crew.h"
-#include "offline_dem/law/random.h"
 #include "offline_dem/world/world.h"
 #include "tests/dem_grains.h"
 
@@ -87,12 +87,12 @@ static int pour(const size_t want, const char *const path)
     if (x == NULL) {
         return 1;
     }
-    struct dig_random random = { .state = 1 };
+    uint64_t random = 1;
     for (size_t i = 0; i < n; i++) {
         const size_t at[3] = { i % across, i / across % across, i / across / across };
         for (size_t k = 0; k < 3; k++) {
             x[k * n + i] = ((double)at[k] + 0.5) * PITCH_m +
-                           dig_random_between(&random, -0.12, 0.12) * RADIUS_m;
+                           dig_chance_between(&random, -0.12, 0.12) * RADIUS_m;
         }
     }
     static struct dig_world world;

@@ -1,8 +1,8 @@
 // Tests for offline_dem/shapes/clump.c and rigid.h: mass and inertia against closed forms and a
 // Monte Carlo estimate, free flight against conservation laws.
 
+#include "core/chance.h"
 #include "core/units.h"
-#include "offline_dem/law/random.h"
 #include "offline_dem/law/rigid.h"
 #include "offline_dem/shapes/clump.h"
 #include "tests/testlib.h"
@@ -62,13 +62,13 @@ TEST(an_overlapping_clump_has_the_inertia_of_the_union)
         3, { 0.0, 0.9, 0.3 }, { 0.0, 0.2, 0.8 }, { 0.0, -0.3, 0.5 }, { 1.0, 0.7, 0.6 }
     };
     const struct dig_clump_shape s      = shape_of(&clump);
-    struct dig_random            random = { .state = 7 };
+    uint64_t                     random = 7;
     double                       n = 0.0, first[3] = { 0.0 }, second[3][3] = { { 0.0 } };
     const double                 throws = 400000.0;
     for (double i = 0.0; i < throws; i += 1.0) {
-        const double p[3] = { dig_random_between(&random, -1.5, 2.0),
-                              dig_random_between(&random, -1.5, 2.0),
-                              dig_random_between(&random, -1.5, 2.0) };
+        const double p[3] = { dig_chance_between(&random, -1.5, 2.0),
+                              dig_chance_between(&random, -1.5, 2.0),
+                              dig_chance_between(&random, -1.5, 2.0) };
         if (holds(&clump, p)) {
             n += 1.0;
             for (int r = 0; r < 3; r++) {
@@ -111,13 +111,13 @@ TEST(the_way_a_clump_lies_is_found_from_its_spheres)
         { 2, { -0.4, 0.4 }, { 0.0, 0.1 }, { 0.0, 0.2 }, { 1.0, 1.0 } },
         { 2, { 0.0, 0.0 }, { 0.0, 0.0 }, { -0.5, 0.5 }, { 1.0, 1.0 } },
     };
-    struct dig_random random = { .state = 3 };
+    uint64_t random = 3;
     for (int trial = 0; trial < 60; trial++) {
         const struct dig_clump_shape s    = shape_of(&clumps[trial % 3]);
         double                       q[4] = { 1.0, 0.0, 0.0, 0.0 };
-        const double                 w[3] = { dig_random_between(&random, -3.0, 3.0),
-                                              dig_random_between(&random, -3.0, 3.0),
-                                              dig_random_between(&random, -3.0, 3.0) };
+        const double                 w[3] = { dig_chance_between(&random, -3.0, 3.0),
+                                              dig_chance_between(&random, -3.0, 3.0),
+                                              dig_chance_between(&random, -3.0, 3.0) };
         dig_rigid_integrate(q, w, 1.0, q);
         double at_m[DIG_CLUMP_MAX][3], rotation[3][3], found[4];
         for (size_t k = 0; k < s.spheres; k++) {

@@ -1,9 +1,9 @@
 // Threads that share a step: every member works once a call, and a large bed moves bit for bit
 // alike on any number of them.
 
+#include "core/chance.h"
 #include "offline_dem/dig/setup.h"
 #include "offline_dem/kernel/crew.h"
-#include "offline_dem/law/random.h"
 #include "offline_dem/world/offloaded.h"
 #include "tests/dem_fixture.h"
 #include "tests/offline_dem/host_device.h"
@@ -44,22 +44,22 @@ TEST(every_member_works_once_a_call)
 // A long bar of grains that touch, and shake.
 static struct dig_world make_bar(void)
 {
-    struct dig_random random = { .state = 3 };
-    double(*const x)[3]      = malloc(MANY * sizeof *x);
+    uint64_t random     = 3;
+    double(*const x)[3] = malloc(MANY * sizeof *x);
     assert_non_null(x);
     for (size_t i = 0; i < MANY; i++) {
         const size_t at[3] = { i / ACROSS / ACROSS, i % ACROSS, i / ACROSS % ACROSS };
         for (size_t k = 0; k < 3; k++) {
             x[i][k] =
-                2.0 * GRAIN_m * (double)at[k] + dig_random_between(&random, -0.02, 0.02) * GRAIN_m;
+                2.0 * GRAIN_m * (double)at[k] + dig_chance_between(&random, -0.02, 0.02) * GRAIN_m;
         }
     }
     struct dig_world world = dem_world(MANY, (const double(*)[3])x, dem_material(0.5, 0.3));
     free(x);
     for (size_t i = 0; i < MANY; i++) {
         for (size_t k = 0; k < 3; k++) {
-            world.grains.motion[i].v_mps[k]   = dig_random_between(&random, -0.2, 0.2);
-            world.grains.motion[i].w_radps[k] = dig_random_between(&random, -20.0, 20.0);
+            world.grains.motion[i].v_mps[k]   = dig_chance_between(&random, -0.2, 0.2);
+            world.grains.motion[i].w_radps[k] = dig_chance_between(&random, -20.0, 20.0);
         }
     }
     dem_add_wall(&world, 1.0, 0.0, 0.0, 0.0);

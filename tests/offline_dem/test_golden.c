@@ -5,9 +5,8 @@
 // IEEE 754 rounds in one way: the number holds for every compiler, libm and processor. Where it
 // changes on purpose, say so under "Numbers changed" in CHANGELOG.md.
 
+#include "core/chance.h"
 #include "tests/dem_fixture.h"
-
-#include "offline_dem/law/random.h"
 
 #define SIDE   7
 #define HIGH   6
@@ -30,13 +29,13 @@ static struct dig_law plain_law(const double reach_m, const double lever_j_m)
 
 static struct dig_world make_bed(void)
 {
-    struct dig_random random = { .state = 7 };
-    double            x[GRAINS][3];
+    uint64_t random = 7;
+    double   x[GRAINS][3];
     for (size_t i = 0; i < GRAINS; i++) {
         const size_t at[3] = { i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE };
         for (size_t k = 0; k < 3; k++) {
             x[i][k] = (2.3 * (double)at[k] + 1.15) * GRAIN_m +
-                      dig_random_between(&random, -0.1, 0.1) * GRAIN_m;
+                      dig_chance_between(&random, -0.1, 0.1) * GRAIN_m;
         }
     }
     struct dig_world world = dem_world(GRAINS, (const double(*)[3])x, dem_material(0.5, 0.5));

@@ -1,9 +1,8 @@
 // The hot loops and the world around them: the same bits from every variant, and what mechanics
 // conserves.
 
+#include "core/chance.h"
 #include "tests/dem_fixture.h"
-
-#include "offline_dem/law/random.h"
 
 #include <math.h>
 
@@ -13,13 +12,13 @@
 // A cloud that falls in on itself, with spin, in no gravity.
 static struct dig_world make_cloud(const uint64_t seed, const double restitution)
 {
-    struct dig_random random = { .state = seed };
-    double            x[GRAINS][3];
+    uint64_t random = seed;
+    double   x[GRAINS][3];
     for (size_t i = 0; i < GRAINS; i++) {
         const size_t at[3] = { i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE };
         for (size_t k = 0; k < 3; k++) {
             x[i][k] = 2.2 * GRAIN_m * ((double)at[k] - 0.5 * (SIDE - 1)) +
-                      dig_random_between(&random, -0.05, 0.05) * GRAIN_m;
+                      dig_chance_between(&random, -0.05, 0.05) * GRAIN_m;
         }
     }
     struct dig_law_material material = dem_material(0.5, 0.3);
@@ -28,8 +27,8 @@ static struct dig_world make_cloud(const uint64_t seed, const double restitution
     for (size_t i = 0; i < GRAINS; i++) {
         struct dig_motion *const m = &world.grains.motion[i];
         for (size_t k = 0; k < 3; k++) {
-            m->v_mps[k]   = -20.0 * m->x_m[k] + dig_random_between(&random, -0.2, 0.2);
-            m->w_radps[k] = dig_random_between(&random, -50.0, 50.0);
+            m->v_mps[k]   = -20.0 * m->x_m[k] + dig_chance_between(&random, -0.2, 0.2);
+            m->w_radps[k] = dig_chance_between(&random, -50.0, 50.0);
         }
     }
     return world;

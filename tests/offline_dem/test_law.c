@@ -1,9 +1,8 @@
 // Constants of the law, against the collisions they stand for.
 
+#include "core/chance.h"
 #include "core/contact.h"
 #include "tests/dem_fixture.h"
-
-#include "offline_dem/law/random.h"
 
 #include <math.h>
 
@@ -110,23 +109,23 @@ TEST(single_precision_errs_by_its_roundings)
     const struct dig_law_material m       = dem_material(0.3, 0.2);
     const struct dig_law          law     = dig_law_pair(&m, GRAIN_m, GRAIN_m, GRAIN_kg, GRAIN_kg);
     const struct dig_law_single   rough   = dig_law_to_single(&law);
-    struct dig_random             random  = { .state = 7 };
+    uint64_t                      random  = 7;
     size_t                        sliding = 0;
     for (int k = 0; k < 20000; k++) {
-        const double deep  = GRAIN_m * pow(10.0, dig_random_between(&random, -7.0, -1.0));
-        const double speed = pow(10.0, dig_random_between(&random, -6.0, 0.0));
+        const double deep  = GRAIN_m * pow(10.0, dig_chance_between(&random, -7.0, -1.0));
+        const double speed = pow(10.0, dig_chance_between(&random, -6.0, 0.0));
         const double spring =
-            law.friction * deep * pow(10.0, dig_random_between(&random, -2.0, 1.0));
+            law.friction * deep * pow(10.0, dig_chance_between(&random, -2.0, 1.0));
         const double torque = law.rolling_lever_m * law.normal_Npm * deep;
         double       n[3];
         double       r[15];
         double       n2 = 0.0;
         for (int a = 0; a < 3; a++) {
-            n[a] = dig_random_between(&random, -1.0, 1.0);
+            n[a] = dig_chance_between(&random, -1.0, 1.0);
             n2 += n[a] * n[a];
         }
         for (int a = 0; a < 15; a++) {
-            r[a] = dig_random_between(&random, -1.0, 1.0);
+            r[a] = dig_chance_between(&random, -1.0, 1.0);
         }
         const double                d_m = (law.reach_m - deep) / sqrt(n2);
         const struct dig_kinematics t   = { d_m * n[0],   d_m * n[1],   d_m * n[2], speed * r[0],

@@ -1,9 +1,9 @@
 // The neighbour list against looking at every pair.
 
+#include "core/chance.h"
 #include "offline_dem/kernel/cell_grid.h"
 #include "offline_dem/kernel/crew.h"
 #include "offline_dem/kernel/neighbour.h"
-#include "offline_dem/law/random.h"
 #include "tests/dem_grains.h"
 #include "tests/testlib.h"
 
@@ -21,15 +21,15 @@ struct scatter {
 // Two radii, a few fast grains with wide margins, one thrown far away.
 static struct scatter make_scatter(const uint64_t seed)
 {
-    struct dig_random random = { .state = seed };
-    struct scatter    s;
-    double            x[GRAINS], y[GRAINS], z[GRAINS], r[GRAINS];
+    uint64_t       random = seed;
+    struct scatter s;
+    double         x[GRAINS], y[GRAINS], z[GRAINS], r[GRAINS];
     for (size_t i = 0; i < GRAINS; i++) {
-        x[i]          = dig_random_between(&random, 0.0, 0.06);
-        y[i]          = dig_random_between(&random, -0.03, 0.03);
-        z[i]          = dig_random_between(&random, 0.0, 0.04);
-        r[i]          = dig_random_next(&random) % 2 == 0 ? 0.003 : 0.005;
-        s.margin_m[i] = i % 50 == 0 ? dig_random_between(&random, 0.002, 0.02) : 0.0006;
+        x[i]          = dig_chance_between(&random, 0.0, 0.06);
+        y[i]          = dig_chance_between(&random, -0.03, 0.03);
+        z[i]          = dig_chance_between(&random, 0.0, 0.04);
+        r[i]          = dig_chance_index(&random, 2) == 0 ? 0.003 : 0.005;
+        s.margin_m[i] = i % 50 == 0 ? dig_chance_between(&random, 0.002, 0.02) : 0.0006;
     }
     x[7] = 12.0;
     assert_int_equal(dem_create_grains(GRAINS, x, y, z, r, 2500.0, &s.grains), DIG_OK);

@@ -1,9 +1,9 @@
 // Tests for offline_dem/world/ode_scene.c: ODE's walls and bucket, and its collision with the
 // plates held against ours.
 
+#include "core/chance.h"
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/law/random.h"
 #include "offline_dem/shapes/bucket_surface.h"
 #include "offline_dem/world/ode_scene.h"
 #include "offline_dem/world/ode_scene_private.h"
@@ -60,15 +60,15 @@ TEST(odes_collision_agrees_where_it_sees_the_plates)
 {
     struct dig_ode_scene *const ode    = dig_ode_scene_create(&ode_scene);
     struct dig_tool             tool   = dig_tool_make(&rig_bucket);
-    struct dig_random           random = { .state = 5 };
+    uint64_t                    random = 5;
     assert_non_null(ode);
     dig_ode_scene_move(ode, (struct dig_pose){ 0.3, 0.4, 0.7 }, 0.0, 0.0, 0.0);
     dig_ode_scene_read(ode, &tool);
     int seen = 0, missed = 0;
     for (int k = 0; k < 200000 && seen < 400; k++) {
-        const double body[3] = { dig_random_between(&random, -0.058, 0.006),
-                                 dig_random_between(&random, -0.039, 0.039),
-                                 dig_random_between(&random, -0.095, 0.004) };
+        const double body[3] = { dig_chance_between(&random, -0.058, 0.006),
+                                 dig_chance_between(&random, -0.039, 0.039),
+                                 dig_chance_between(&random, -0.095, 0.004) };
         double       best = INFINITY, closest[3] = { 0.0 };
         int          near = 0;
         for (size_t plate = 0; plate < tool.plates; plate++) {

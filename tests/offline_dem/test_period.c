@@ -1,9 +1,9 @@
 // Sides that are one: the same mechanics across the border as in the middle.
 
+#include "core/chance.h"
 #include "tests/dem_fixture.h"
 
 #include "offline_dem/law/period.h"
-#include "offline_dem/law/random.h"
 
 #include <math.h>
 
@@ -89,12 +89,12 @@ TEST(a_pair_across_the_border_moves_as_in_the_middle)
 // A cloud that falls in on itself and reaches around the period.
 TEST(momentum_is_kept_across_the_border)
 {
-    struct dig_random random = { .state = 3 };
-    double            x[GRAINS][3];
+    uint64_t random = 3;
+    double   x[GRAINS][3];
     for (size_t i = 0; i < GRAINS; i++) {
         const size_t at[3] = { i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE };
         for (size_t k = 0; k < 3; k++) {
-            x[i][k] = (2.2 * (double)at[k] + dig_random_between(&random, -0.05, 0.05)) * GRAIN_m;
+            x[i][k] = (2.2 * (double)at[k] + dig_chance_between(&random, -0.05, 0.05)) * GRAIN_m;
         }
     }
     struct dig_world world = dem_world(GRAINS, (const double(*)[3])x, dem_material(0.5, 0.3));
@@ -103,7 +103,7 @@ TEST(momentum_is_kept_across_the_border)
     for (size_t i = 0; i < GRAINS; i++) {
         for (size_t k = 0; k < 3; k++) {
             const double inward             = k == 1 ? 0.0 : -20.0 * (x[i][k] - 3.3 * GRAIN_m);
-            world.grains.motion[i].v_mps[k] = inward + dig_random_between(&random, -0.3, 0.3);
+            world.grains.motion[i].v_mps[k] = inward + dig_chance_between(&random, -0.3, 0.3);
             p[0][k] += world.grains.motion[i].v_mps[k];
         }
     }

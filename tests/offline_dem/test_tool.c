@@ -1,8 +1,8 @@
 // The bucket's plates: closest points against looking everywhere, what counts as one contact.
 
+#include "core/chance.h"
 #include "tests/dem_fixture.h"
 
-#include "offline_dem/law/random.h"
 #include "offline_dem/shapes/bucket_surface.h"
 #include "offline_dem/world/surfaces.h"
 #include "tests/offline_dem/rig_bucket.h"
@@ -47,12 +47,12 @@ static double sampled_distance(const size_t plate, const double p[3])
 TEST(the_closest_point_is_the_closest_of_all)
 {
     const struct dig_tool tool   = dig_tool_make(&rig_bucket);
-    struct dig_random     random = { .state = 1 };
+    uint64_t              random = 1;
     assert_int_equal(tool.plates, 6);
     for (int k = 0; k < (test_is_quick() ? 20 : 120); k++) {
-        const double p[3] = { dig_random_between(&random, -0.07, 0.02),
-                              dig_random_between(&random, -0.05, 0.05),
-                              dig_random_between(&random, -0.11, 0.02) };
+        const double p[3] = { dig_chance_between(&random, -0.07, 0.02),
+                              dig_chance_between(&random, -0.05, 0.05),
+                              dig_chance_between(&random, -0.11, 0.02) };
         for (size_t plate = 0; plate < tool.plates; plate++) {
             double c[3];
             dig_bucket_closest(&tool.bucket, plate, p, c);
