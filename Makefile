@@ -25,7 +25,7 @@ ALL_CFLAGS  = $(STD) $(WARN) -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -MMD -M
 # Expanded only by the rules that need the library, so a missing one stops that rule and no other.
 pkg_cflags  = $(shell $(PKG_CONFIG) --cflags $(1))
 pkg_libs    = $(shell $(PKG_CONFIG) --libs $(1))
-LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm libcyaml nettle) -lyaml -lpthread -lm
+LIBS        = $(call pkg_libs,ode sqlite3 nlopt libmodbus lcm nettle) -lyaml -lpthread -lm
 
 # Goals that compile nothing, or install what is missing first. Before any other, a missing library is named.
 compile_nothing := setup demo test help clean format format-check layers uninstall arm64 spy deb deb-check
@@ -159,11 +159,11 @@ numerics      = $(shell { cat $(sort $(numerics_src)); echo '$(CC) $(STD) $(CFLA
 $(BUILD)/offline_dem/sweep/sweep.o: CPPFLAGS += -DDIG_NUMERICS='"$(numerics)"'
 $(BUILD)/offline_dem/sweep/sweep.o: $(numerics_src)
 $(BUILD)/tables/%.o:        CPPFLAGS += $(call foreign,sqlite3)
-$(BUILD)/files/%.o:         CPPFLAGS += $(call foreign,lcm libcyaml)
-$(BUILD)/firmware_host/%.o: CPPFLAGS += $(call foreign,lcm libmodbus libcyaml)
+$(BUILD)/files/%.o:         CPPFLAGS += $(call foreign,lcm)
+$(BUILD)/firmware_host/%.o: CPPFLAGS += $(call foreign,lcm libmodbus)
 $(BUILD)/tools/rig/%.o:     CPPFLAGS += $(call foreign,libmodbus)
 $(BUILD)/tools/digwatch/%.o: CPPFLAGS += $(call foreign,lcm)
-$(BUILD)/tests/%.o:         CPPFLAGS += $(call foreign,cmocka lcm libmodbus libcyaml sqlite3 ode) $(TEST_CFLAGS)
+$(BUILD)/tests/%.o:         CPPFLAGS += $(call foreign,cmocka lcm libmodbus sqlite3 ode) $(TEST_CFLAGS)
 # What sanitizers need not look for in the wings that compute.
 $(BUILD)/estimator/%.o $(BUILD)/offline_dem/%.o $(BUILD)/closed_loop/%.o: CPPFLAGS += $(NUMERIC_CFLAGS)
 
@@ -384,7 +384,7 @@ $(BUILD)/man/.made: $(bins) scripts/man_pages.sh
 	$(Q)rm -rf $(@D) && scripts/man_pages.sh $(@D) $(bins) && touch $@
 
 lint_flags = -I. -I$(BUILD) -DDIG_VERSION='"$(VERSION)"' -DDIG_NUMERICS='"lint"' -DDIG_KERNEL_BASE -fopenmp-simd \
-             $(call foreign,ode sqlite3 nlopt lcm libmodbus libcyaml nettle)
+             $(call foreign,ode sqlite3 nlopt lcm libmodbus nettle)
 
 clean: ## Remove the build folder
 	$(Q)rm -rf $(BUILD)

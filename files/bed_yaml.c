@@ -5,119 +5,121 @@
 
 #include <string.h>
 
-static const cyaml_strval_t normal_laws[] = {
+static const struct dig_yaml_word normal_laws[] = {
     { "hooke", DIG_NORMAL_HOOKE },
     { "hertz", DIG_NORMAL_HERTZ },
+    { .word = NULL },
 };
-static const cyaml_strval_t rolling_laws[] = {
+static const struct dig_yaml_word rolling_laws[] = {
     { "epsd2", DIG_ROLLING_EPSD2 },
     { "cdt", DIG_ROLLING_CDT },
     { "none", DIG_ROLLING_NONE },
+    { .word = NULL },
 };
-static const cyaml_strval_t shapes[] = {
+static const struct dig_yaml_word shapes[] = {
     { "sphere", DIG_OBSTACLE_SPHERE },
     { "box", DIG_OBSTACLE_BOX },
+    { .word = NULL },
 };
 
-const cyaml_schema_field_t dig_laws_fields[] = {
-    CYAML_FIELD_ENUM("normal", OPTIONAL, struct dig_laws, normal, normal_laws, 2),
-    CYAML_FIELD_ENUM("rolling", OPTIONAL, struct dig_laws, rolling, rolling_laws, 3),
-    CYAML_FIELD_FLOAT("cohesion_Jpm3", OPTIONAL, struct dig_laws, cohesion_Jpm3),
-    CYAML_FIELD_FLOAT("adhesion_Jpm3", OPTIONAL, struct dig_laws, adhesion_Jpm3),
-    CYAML_FIELD_FLOAT("bucket_smoothness", OPTIONAL, struct dig_laws, bucket_smoothness),
+const struct dig_yaml_field dig_laws_fields[] = {
+    FIELD(WORD, "normal", dig_laws, normal, OPTIONAL, .word = normal_laws),
+    FIELD(WORD, "rolling", dig_laws, rolling, OPTIONAL, .word = rolling_laws),
+    FIELD(NUMBER, "cohesion_Jpm3", dig_laws, cohesion_Jpm3, OPTIONAL),
+    FIELD(NUMBER, "adhesion_Jpm3", dig_laws, adhesion_Jpm3, OPTIONAL),
+    FIELD(NUMBER, "bucket_smoothness", dig_laws, bucket_smoothness, OPTIONAL),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_field_t size_fields[] = {
+static const struct dig_yaml_field size_fields[] = {
     NUMBER(dig_size, diameter_m),
     NUMBER(dig_size, mass_fraction),
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t size = ENTRY(dig_size, size_fields);
+static const struct dig_yaml_field size = ENTRY(dig_size, size_fields);
 
-static const cyaml_schema_field_t log_normal_fields[] = {
+static const struct dig_yaml_field log_normal_fields[] = {
     NUMBER(bed_text, median_m),
     NUMBER(bed_text, sigma),
-    CYAML_FIELD_UINT("classes", REQUIRED, struct bed_text, classes),
-    CYAML_FIELD_END,
+    FIELD(COUNT, "classes", bed_text, classes, REQUIRED),
+    END,
 };
 
-static const cyaml_schema_field_t material_fields[] = {
+static const struct dig_yaml_field material_fields[] = {
     TEXT(dig_other_material, name),
     NUMBER(dig_other_material, friction),
     NUMBER(dig_other_material, rolling),
     NUMBER(dig_other_material, density_kgpm3),
     NUMBER(dig_other_material, restitution),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t material = ENTRY(dig_other_material, material_fields);
+static const struct dig_yaml_field material = ENTRY(dig_other_material, material_fields);
 
-static const cyaml_schema_field_t pair_fields[] = {
-    CYAML_FIELD_SEQUENCE_FIXED("between", REQUIRED, struct pair_text, between, &dig_yaml_name, 2),
+static const struct dig_yaml_field pair_fields[] = {
+    FIELD(LIST, "between", pair_text, between, REQUIRED, .of = &dig_yaml_name),
     NUMBER(pair_text, friction),
     NUMBER(pair_text, rolling),
     NUMBER(pair_text, restitution),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t pair = ENTRY(pair_text, pair_fields);
+static const struct dig_yaml_field pair = ENTRY(pair_text, pair_fields);
 
-static const cyaml_schema_field_t layer_fields[] = {
+static const struct dig_yaml_field layer_fields[] = {
     TEXT(layer_text, material),
     NUMBERS("z_m", REQUIRED, layer_text, z_m),
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t layer = ENTRY(layer_text, layer_fields);
+static const struct dig_yaml_field layer = ENTRY(layer_text, layer_fields);
 
-static const cyaml_schema_field_t profile_fields[] = {
+static const struct dig_yaml_field profile_fields[] = {
     NUMBER(profile_text, y_m),
-    LIST("surface_m", REQUIRED, profile_text, surface_m, points, &dig_yaml_point, 2,
-         DIG_SURFACE_MAX),
-    CYAML_FIELD_END,
+    LIST("surface_m", REQUIRED, profile_text, surface_m, points, &dig_yaml_point, 2),
+    END,
 };
-static const cyaml_schema_value_t profile = ENTRY(profile_text, profile_fields);
+static const struct dig_yaml_field profile = ENTRY(profile_text, profile_fields);
 
-static const cyaml_schema_field_t sphere_fields[] = {
+static const struct dig_yaml_field sphere_fields[] = {
     NUMBERS("centre", REQUIRED, sphere_text, centre),
     NUMBER(sphere_text, radius),
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t sphere = ENTRY(sphere_text, sphere_fields);
+static const struct dig_yaml_field sphere = ENTRY(sphere_text, sphere_fields);
 
-static const cyaml_schema_field_t obstacle_fields[] = {
-    CYAML_FIELD_ENUM("shape", REQUIRED, struct obstacle_text, obstacle.shape, shapes, 2),
+static const struct dig_yaml_field obstacle_fields[] = {
+    FIELD(WORD, "shape", obstacle_text, obstacle.shape, REQUIRED, .word = shapes),
     NUMBERS("centre_m", REQUIRED, obstacle_text, obstacle.centre_m),
-    CYAML_FIELD_FLOAT("diameter_m", OPTIONAL, struct obstacle_text, diameter_m),
+    FIELD(NUMBER, "diameter_m", obstacle_text, diameter_m, OPTIONAL),
     NUMBERS("edges_m", OPTIONAL, obstacle_text, edges_m),
-    CYAML_FIELD_BOOL("movable", OPTIONAL, struct obstacle_text, obstacle.movable),
-    CYAML_FIELD_FLOAT("density_kgpm3", OPTIONAL, struct obstacle_text, obstacle.density_kgpm3),
+    FIELD(BOOL, "movable", obstacle_text, obstacle.movable, OPTIONAL),
+    FIELD(NUMBER, "density_kgpm3", obstacle_text, obstacle.density_kgpm3, OPTIONAL),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t obstacle = ENTRY(obstacle_text, obstacle_fields);
+static const struct dig_yaml_field obstacle = ENTRY(obstacle_text, obstacle_fields);
 
-#define OF_BED(key, member, count, entry, least, most)                                             \
-    LIST(key, OPTIONAL, bed_text, member, bed.count, entry, least, most)
+#define OF_BED(key, member, count, entry, least)                                                   \
+    LIST(key, OPTIONAL, bed_text, member, bed.count, entry, least)
 
-const cyaml_schema_field_t dig_bed_fields[] = {
-    OF_BED("sizes", bed.size, sizes, &size, 1, DIG_SIZES_MAX),
-    ACROSS("log_normal", OPTIONAL, bed_text, log_normal_fields),
-    OF_BED("materials", bed.material, materials, &material, 1, DIG_MATERIALS_MAX),
-    OF_BED("pairs", pairs, pairs, &pair, 1, DIG_PAIRS_MAX),
-    OF_BED("layers", layers, layers, &layer, 1, DIG_LAYERS_MAX),
-    OF_BED("surface_m", surface_m, surface, &dig_yaml_point, 2, DIG_SURFACE_MAX),
-    OF_BED("surfaces", surfaces, profiles, &profile, 2, DIG_PROFILES_MAX),
-    OF_BED("clump", clump, clump.spheres, &sphere, 2, DIG_CLUMP_MAX),
-    OF_BED("obstacles", obstacles, obstacles, &obstacle, 1, DIG_OBSTACLES_MAX),
-    CYAML_FIELD_BOOL("periodic_y", OPTIONAL, struct bed_text, bed.periodic_y),
-    CYAML_FIELD_FLOAT("preload_Pa", OPTIONAL, struct bed_text, bed.preload_Pa),
-    CYAML_FIELD_UINT("earlier_digs", OPTIONAL, struct bed_text, bed.earlier_digs),
-    CYAML_FIELD_STRING("earlier", OPTIONAL, struct bed_text, bed.earlier, 1),
-    CYAML_FIELD_BOOL("earlier_as_dug", OPTIONAL, struct bed_text, bed.earlier_as_dug),
+const struct dig_yaml_field dig_bed_fields[] = {
+    OF_BED("sizes", bed.size, sizes, &size, 1),
+    ACROSS("log_normal", OPTIONAL, log_normal_fields),
+    OF_BED("materials", bed.material, materials, &material, 1),
+    OF_BED("pairs", pairs, pairs, &pair, 1),
+    OF_BED("layers", layers, layers, &layer, 1),
+    OF_BED("surface_m", surface_m, surface, &dig_yaml_point, 2),
+    OF_BED("surfaces", surfaces, profiles, &profile, 2),
+    OF_BED("clump", clump, clump.spheres, &sphere, 2),
+    OF_BED("obstacles", obstacles, obstacles, &obstacle, 1),
+    FIELD(BOOL, "periodic_y", bed_text, bed.periodic_y, OPTIONAL),
+    FIELD(NUMBER, "preload_Pa", bed_text, bed.preload_Pa, OPTIONAL),
+    FIELD(COUNT, "earlier_digs", bed_text, bed.earlier_digs, OPTIONAL),
+    FIELD(TEXT, "earlier", bed_text, bed.earlier, OPTIONAL, .least = 1),
+    FIELD(BOOL, "earlier_as_dug", bed_text, bed.earlier_as_dug, OPTIONAL),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
 // The number of the material of that name; one beyond the walls when there is none.
@@ -195,8 +197,8 @@ static enum dig_status convert_obstacles(const struct bed_text *const text,
     return DIG_OK;
 }
 
-static void convert_surface(const size_t points, const struct dig_yaml_point text[], double x_m[],
-                            double z_m[])
+void dig_bed_polyline(const size_t points, const struct dig_yaml_point text[], double x_m[],
+                      double z_m[])
 {
     for (size_t i = 0; i < points; i++) {
         x_m[i] = text[i].xz_m[0];
@@ -208,13 +210,13 @@ enum dig_status dig_bed_convert(const struct bed_text *const text, struct dig_be
                                 struct dig_error *const error)
 {
     *bed = text->bed;
-    convert_surface(bed->surface, text->surface_m, bed->surface_x_m, bed->surface_z_m);
+    dig_bed_polyline(bed->surface, text->surface_m, bed->surface_x_m, bed->surface_z_m);
     for (size_t k = 0; k < bed->profiles; k++) {
         const struct profile_text *const p  = &text->surfaces[k];
         struct dig_ground_profile *const to = &bed->profile[k];
         to->y_m                             = p->y_m;
         to->points                          = p->points;
-        convert_surface(p->points, p->surface_m, to->x_m, to->z_m);
+        dig_bed_polyline(p->points, p->surface_m, to->x_m, to->z_m);
     }
     for (size_t i = 0; i < bed->clump.spheres; i++) {
         bed->clump.x[i]      = text->clump[i].centre[0];

@@ -50,8 +50,12 @@ struct bed_text {
     struct obstacle_text  obstacles[DIG_OBSTACLES_MAX];
 };
 
-extern const cyaml_schema_field_t dig_laws_fields[]; // into a struct dig_laws
-extern const cyaml_schema_field_t dig_bed_fields[];  // into a struct bed_text
+extern const struct dig_yaml_field dig_laws_fields[]; // into a struct dig_laws
+extern const struct dig_yaml_field dig_bed_fields[];  // into a struct bed_text
+
+/// Points of a polyline into two arrays.
+void dig_bed_polyline(size_t points, const struct dig_yaml_point text[], double x_m[],
+                      double z_m[]);
 
 /// The whole bed. DIG_EINVAL names the key of a material that is not there, of an obstacle whose
 /// size does not fit its shape, or of a distribution that cannot be.

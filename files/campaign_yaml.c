@@ -3,7 +3,6 @@
 #include "core/name.h"
 #include "files/lcm/lcm_log.h"
 #include "files/yaml/yaml.h"
-#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -11,32 +10,31 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const cyaml_strval_t roles[] = {
+static const struct dig_yaml_word roles[] = {
     { "identify", DIG_ROLE_IDENTIFY },
     { "fit", DIG_ROLE_FIT },
     { "holdout", DIG_ROLE_HOLDOUT },
+    { .word = NULL },
 };
 
-static const cyaml_schema_field_t recording_fields[] = {
+static const struct dig_yaml_field recording_fields[] = {
     TEXT(dig_campaign_recording, file),
     TEXT(dig_campaign_recording, trajectory),
-    CYAML_FIELD_ENUM("role", CYAML_FLAG_STRICT, struct dig_campaign_recording, role, roles,
-                     sizeof roles / sizeof roles[0]),
-    CYAML_FIELD_UINT("pass", OPTIONAL, struct dig_campaign_recording, pass),
-    CYAML_FIELD_END,
+    FIELD(WORD, "role", dig_campaign_recording, role, REQUIRED, .word = roles),
+    FIELD(COUNT, "pass", dig_campaign_recording, pass, OPTIONAL),
+    END,
 };
-static const cyaml_schema_value_t recording = ENTRY(dig_campaign_recording, recording_fields);
+static const struct dig_yaml_field recording = ENTRY(dig_campaign_recording, recording_fields);
 
-static const cyaml_schema_field_t fields[] = {
+static const struct dig_yaml_field fields[] = {
     TEXT(dig_campaign, scene),
-    CYAML_FIELD_STRING("machine", OPTIONAL, struct dig_campaign, machine, 0),
-    LIST("recordings", REQUIRED, dig_campaign, recording, recordings, &recording, 1,
-         DIG_CAMPAIGN_MAX),
+    FIELD(TEXT, "machine", dig_campaign, machine, OPTIONAL, .least = 0),
+    LIST("recordings", REQUIRED, dig_campaign, recording, recordings, &recording, 1),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_value_t schema = FILE_OF(dig_campaign, fields);
+static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct dig_campaign) };
 
 // Puts the campaign's folder before a relative path.
 static void resolve(const char *const yaml, const char *const key,
@@ -86,7 +84,7 @@ static void require_once(const struct dig_campaign *const campaign, const size_t
     }
 }
 
-static void take(const char *const yaml, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const yaml, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
     struct dig_campaign *const campaign = loaded;

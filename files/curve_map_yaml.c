@@ -2,7 +2,6 @@
 
 #include "core/name.h"
 #include "files/yaml/yaml.h"
-#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <math.h>
@@ -11,17 +10,16 @@
 #define NAME_MAX_LENGTH 39 // of an engine and its version, as a table keeps them
 
 // A factor that is not given is 0.
-static const cyaml_schema_field_t column_fields[] = {
-    CYAML_FIELD_STRING("column", OPTIONAL, struct dig_map_column, column, 1),
-    CYAML_FIELD_STRING("value", OPTIONAL, struct dig_map_column, value, 1),
-    CYAML_FIELD_FLOAT("factor", OPTIONAL, struct dig_map_column, factor),
-    CYAML_FIELD_END,
+static const struct dig_yaml_field column_fields[] = {
+    FIELD(TEXT, "column", dig_map_column, column, OPTIONAL, .least = 1),
+    FIELD(TEXT, "value", dig_map_column, value, OPTIONAL, .least = 1),
+    FIELD(NUMBER, "factor", dig_map_column, factor, OPTIONAL),
+    END,
 };
 
-#define COLUMN(key, flags, field_)                                                                 \
-    CYAML_FIELD_MAPPING(key, flags, struct dig_curve_map, field[field_], column_fields)
+#define COLUMN(key, flag, field_) PART(key, flag, dig_curve_map, field[field_], column_fields)
 
-static const cyaml_schema_field_t columns_fields[] = {
+static const struct dig_yaml_field columns_fields[] = {
     COLUMN("friction", REQUIRED, DIG_MAP_FRICTION),
     COLUMN("rolling", REQUIRED, DIG_MAP_ROLLING),
     COLUMN("density_kgpm3", REQUIRED, DIG_MAP_DENSITY_kgpm3),
@@ -34,19 +32,19 @@ static const cyaml_schema_field_t columns_fields[] = {
     COLUMN("packing", OPTIONAL, DIG_MAP_PACKING),
     COLUMN("depth", OPTIONAL, DIG_MAP_DEPTH),
     COLUMN("attack_deg", OPTIONAL, DIG_MAP_ATTACK_deg),
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_field_t fields[] = {
+static const struct dig_yaml_field fields[] = {
     TEXT(dig_curve_map, scene),
     TEXT(dig_curve_map, engine),
     TEXT(dig_curve_map, version),
-    ACROSS("columns", REQUIRED, dig_curve_map, columns_fields),
+    ACROSS("columns", REQUIRED, columns_fields),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_value_t schema = FILE_OF(dig_curve_map, fields);
+static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct dig_curve_map) };
 
 const char *dig_map_name(const enum dig_map_field field)
 {
@@ -79,7 +77,7 @@ static void check_length(const char *const key, const char *const label,
                 NAME_MAX_LENGTH);
 }
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
     const struct dig_curve_map *const text = loaded;

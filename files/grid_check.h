@@ -6,13 +6,10 @@
 #include "files/grid_yaml.h"
 
 /// Axes, points, effects and names.
-void dig_grid_check(const char *path, const struct dig_grid *grid, struct dig_conditions *c);
+void dig_grid_check(const struct dig_grid *grid, struct dig_conditions *c);
 
-/// A list at a key: ascending, within the range.
-void dig_grid_check_values(const char *list, size_t count, const double value[], double least,
-                           double most, struct dig_conditions *c);
-
-/// A number of packings at a key.
-void dig_grid_check_packings(const char *key, size_t packings, struct dig_conditions *c);
+/// A list at a key: ascending.
+void dig_grid_check_ascending(const char *list, size_t count, const double value[],
+                              struct dig_conditions *c);
 
 #endif // DIG_FILES_GRID_CHECK_H

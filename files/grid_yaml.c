@@ -5,7 +5,6 @@
 #include "core/units.h"
 #include "files/grid_check.h"
 #include "files/yaml/yaml.h"
-#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <math.h>
@@ -14,15 +13,16 @@
 
 enum design { DESIGN_CROSS, DESIGN_PRODUCT };
 
-static const cyaml_strval_t designs[] = { { "cross", DESIGN_CROSS },
-                                          { "product", DESIGN_PRODUCT } };
+static const struct dig_yaml_word designs[] = { { "cross", DESIGN_CROSS },
+                                                { "product", DESIGN_PRODUCT },
+                                                { .word = NULL } };
 
 struct effect_text {
     char                   name[DIG_NAME_SIZE];
     struct dig_grid_effect effect; // but for its id
 };
 
-// The grid, attacks of its points in degrees, beside what makes its approaches.
+// The grid, beside what makes its approaches.
 struct grid_text {
     struct dig_grid    grid;
     double             depth[DIG_APPROACH_VALUES_MAX];
@@ -32,53 +32,70 @@ struct grid_text {
     struct effect_text effect[DIG_GRID_EFFECTS_MAX];
 };
 
-#define GRAVEL(key, axis)                                                                          \
-    CYAML_FIELD_FLOAT(key, REQUIRED, struct dig_grid_point, gravel.value[axis])
+// What a grain can be: frictionless up to interlocking, pumice up to ore.
+#define FRICTION .low = 0.0, .high = 3.0
+#define DENSITY  .low = 100.0, .high = 20000.0
+#define DEPTH    .low = DIG_APPROACH_DEPTH_LEAST, .high = DIG_APPROACH_DEPTH_MOST
+#define ATTACK   .low = -45.0, .high = 45.0
+#define PACKINGS .low = 1.0, .high = 1000.0
 
-static const cyaml_schema_field_t point_fields[] = {
-    GRAVEL("friction", DIG_AXIS_FRICTION),
-    GRAVEL("rolling", DIG_AXIS_ROLLING),
-    GRAVEL("density_kgpm3", DIG_AXIS_DENSITY_kgpm3),
-    CYAML_FIELD_FLOAT("depth", OPTIONAL, struct dig_grid_point, approach.depth),
-    CYAML_FIELD_FLOAT("attack_deg", OPTIONAL, struct dig_grid_point, approach.attack_rad),
-    CYAML_FIELD_UINT("packings", REQUIRED, struct dig_grid_point, packings),
-    CYAML_FIELD_END,
+#define GRAVEL(key, axis, ...)                                                                     \
+    FIELD(NUMBER, key, dig_grid_point, gravel.value[axis], REQUIRED, __VA_ARGS__)
+
+static const struct dig_yaml_field point_fields[] = {
+    GRAVEL("friction", DIG_AXIS_FRICTION, FRICTION),
+    GRAVEL("rolling", DIG_AXIS_ROLLING, FRICTION),
+    GRAVEL("density_kgpm3", DIG_AXIS_DENSITY_kgpm3, DENSITY),
+    FIELD(NUMBER, "depth", dig_grid_point, approach.depth, OPTIONAL, DEPTH),
+    FIELD(NUMBER, "attack_deg", dig_grid_point, approach.attack_rad, OPTIONAL, ATTACK,
+          .factor = DIG_RAD_PER_DEG),
+    FIELD(COUNT, "packings", dig_grid_point, packings, REQUIRED, PACKINGS),
+    END,
 };
-static const cyaml_schema_value_t point = ENTRY(dig_grid_point, point_fields);
+static const struct dig_yaml_field point = ENTRY(dig_grid_point, point_fields);
 
-static const cyaml_schema_field_t effect_fields[] = {
+static const struct dig_yaml_field effect_fields[] = {
     TEXT(effect_text, name),
     LIST("magnitudes", REQUIRED, effect_text, effect.magnitude, effect.magnitudes, &dig_yaml_number,
-         1, DIG_MAGNITUDES_MAX),
-    CYAML_FIELD_END,
+         1),
+    END,
 };
-static const cyaml_schema_value_t effect = ENTRY(effect_text, effect_fields);
+static const struct dig_yaml_field effect = ENTRY(effect_text, effect_fields);
 
-#define AXIS(key, axis)                                                                            \
-    LIST(key, OPTIONAL, grid_text, grid.value[axis], grid.count[axis], &dig_yaml_number, 1,        \
-         DIG_AXIS_VALUES_MAX)
-#define VALUES(member, count)                                                                      \
-    LIST(#member, OPTIONAL, grid_text, member, count, &dig_yaml_number, 1, DIG_APPROACH_VALUES_MAX)
+static const struct dig_yaml_field friction_value = { .kind = DIG_YAML_NUMBER,
+                                                      .size = sizeof(double),
+                                                      FRICTION };
+static const struct dig_yaml_field density_value  = { .kind = DIG_YAML_NUMBER,
+                                                      .size = sizeof(double),
+                                                      DENSITY };
+static const struct dig_yaml_field depth_value    = { .kind = DIG_YAML_NUMBER,
+                                                      .size = sizeof(double),
+                                                      DEPTH };
+static const struct dig_yaml_field attack_value   = { .kind = DIG_YAML_NUMBER,
+                                                      .size = sizeof(double),
+                                                      ATTACK };
 
-static const cyaml_schema_field_t fields[] = {
-    AXIS("friction", DIG_AXIS_FRICTION),
-    AXIS("rolling", DIG_AXIS_ROLLING),
-    AXIS("density_kgpm3", DIG_AXIS_DENSITY_kgpm3),
-    CYAML_FIELD_UINT("packings", OPTIONAL, struct grid_text, grid.packings),
-    VALUES(depth, depths),
-    VALUES(attack_deg, attacks),
-    CYAML_FIELD_ENUM("design", OPTIONAL | CYAML_FLAG_STRICT, struct grid_text, design, designs,
-                     sizeof designs / sizeof designs[0]),
-    CYAML_FIELD_UINT("varied_packings", OPTIONAL, struct grid_text, grid.varied_packings),
-    LIST("points", OPTIONAL, grid_text, grid.point, grid.points, &point, 0, DIG_GRID_POINTS_MAX),
-    LIST("effects", OPTIONAL, grid_text, effect, grid.effects, &effect, 0, DIG_GRID_EFFECTS_MAX),
-    LIST("trajectories", OPTIONAL, grid_text, grid.trajectory, grid.trajectories, &dig_yaml_name, 0,
-         DIG_TRAJECTORY_MAX),
+#define AXIS(key, axis, entry)                                                                     \
+    LIST(key, OPTIONAL, grid_text, grid.value[axis], grid.count[axis], entry, 1)
+
+static const struct dig_yaml_field fields[] = {
+    AXIS("friction", DIG_AXIS_FRICTION, &friction_value),
+    AXIS("rolling", DIG_AXIS_ROLLING, &friction_value),
+    AXIS("density_kgpm3", DIG_AXIS_DENSITY_kgpm3, &density_value),
+    FIELD(COUNT, "packings", grid_text, grid.packings, OPTIONAL, PACKINGS),
+    LIST("depth", OPTIONAL, grid_text, depth, depths, &depth_value, 1),
+    LIST("attack_deg", OPTIONAL, grid_text, attack_deg, attacks, &attack_value, 1),
+    FIELD(WORD, "design", grid_text, design, OPTIONAL, .word = designs),
+    FIELD(COUNT, "varied_packings", grid_text, grid.varied_packings, OPTIONAL, PACKINGS),
+    LIST("points", OPTIONAL, grid_text, grid.point, grid.points, &point, 0),
+    LIST("effects", OPTIONAL, grid_text, effect, grid.effects, &effect, 0),
+    LIST("trajectories", OPTIONAL, grid_text, grid.trajectory, grid.trajectories, &dig_yaml_name,
+         0),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_value_t schema = FILE_OF(grid_text, fields);
+static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct grid_text) };
 
 static void convert_effects(const struct grid_text *const text, struct dig_grid *const grid,
                             struct dig_conditions *const c)
@@ -101,34 +118,29 @@ static void convert_effects(const struct grid_text *const text, struct dig_grid 
     }
 }
 
-// One list of depths or attacks: ascending, within the range, the plain value among them.
+// One list of depths or attacks: the plain value among them.
 static void check_list(const char *const list, const size_t count, const double value[],
-                       const double plain, const double least, const double most,
-                       struct dig_conditions *const c)
+                       const double plain, struct dig_conditions *const c)
 {
-    dig_grid_check_values(list, count, value, least, most, c);
     bool has_plain = count == 0;
     for (size_t i = 0; i < count; i++) {
         has_plain = has_plain || !(value[i] < plain || value[i] > plain);
     }
+    dig_grid_check_ascending(list, count, value, c);
     dig_require(c, has_plain,
                 "%s: without %g, expected it among the values: the digs as the scene has them",
                 list, plain);
 }
 
-static void check_approaches(const char *const path, const struct grid_text *const text,
-                             struct dig_conditions *const c)
+static void check_approaches(const struct grid_text *const text, struct dig_conditions *const c)
 {
-    check_list("depth", text->depths, text->depth, 1.0, DIG_APPROACH_DEPTH_LEAST,
-               DIG_APPROACH_DEPTH_MOST, c);
-    check_list("attack_deg", text->attacks, text->attack_deg, 0.0, -45.0, 45.0, c);
     const bool lists = text->depths + text->attacks > 0;
+    check_list("depth", text->depths, text->depth, 1.0, c);
+    check_list("attack_deg", text->attacks, text->attack_deg, 0.0, c);
     dig_require(c, !lists || text->grid.effects == 0, "%s: beside effects, expected either",
                 text->depths > 0 ? "depth" : "attack_deg");
-    if (dig_yaml_line(path, "varied_packings") > 0) {
-        dig_require(c, lists, "varied_packings: without depth or attack_deg, expected one of them");
-        dig_grid_check_packings("varied_packings", text->grid.varied_packings, c);
-    }
+    dig_require(c, lists || text->grid.varied_packings == 0,
+                "varied_packings: without depth or attack_deg, expected one of them");
 }
 
 // The cross has one axis at a time, the product every combination.
@@ -152,25 +164,23 @@ static void convert_approaches(const struct grid_text *const text, struct dig_gr
     }
 }
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
-    const struct grid_text *const text = loaded;
-    struct dig_grid               grid = text->grid;
-    for (size_t i = 0; i < grid.points; i++) {
-        struct dig_grid_point *const p = &grid.point[i];
-        p->states = fabs(p->approach.depth) > 0.0 || fabs(p->approach.attack_rad) > 0.0;
-        p->approach.attack_rad *= DIG_RAD_PER_DEG;
+    struct grid_text *const text = loaded;
+    struct dig_grid *const  grid = &text->grid;
+    (void)path;
+    for (size_t i = 0; i < grid->points; i++) {
+        struct dig_grid_point *const p = &grid->point[i];
+        p->states   = fabs(p->approach.depth) > 0.0 || fabs(p->approach.attack_rad) > 0.0;
         p->approach = dig_approach_normalized(&p->approach);
     }
-    convert_approaches(text, &grid);
-    convert_effects(text, &grid, c);
-    check_approaches(path, text, c);
+    convert_approaches(text, grid);
+    convert_effects(text, grid, c);
+    check_approaches(text, c);
+    dig_grid_check(grid, c);
     if (c->status == DIG_OK) {
-        dig_grid_check(path, &grid, c);
-    }
-    if (c->status == DIG_OK) {
-        *(struct dig_grid *)into = grid;
+        *(struct dig_grid *)into = *grid;
     }
 }
 

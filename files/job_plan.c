@@ -4,41 +4,37 @@
 #include "core/name.h"
 #include "files/text/whole.h"
 #include "files/yaml/yaml.h"
-#include "files/yaml/yaml_schema.h"
 
 #include <assert.h>
 #include <stdio.h>
 
 #define BEDS_MAX 10000000
 
-#define WHOLE(member) CYAML_FIELD_UINT(#member, REQUIRED, struct dig_job_plan, member)
+#define WHOLE(member, least, most_)                                                                \
+    FIELD(COUNT, #member, dig_job_plan, member, REQUIRED, .low = (least), .high = (most_))
 
-static const cyaml_schema_field_t fields[] = {
+static const struct dig_yaml_field fields[] = {
     TEXT(dig_job_plan, job),
-    CYAML_FIELD_STRING("digs_sha256", REQUIRED, struct dig_job_plan, digs_sha256, 64),
+    FIELD(TEXT, "digs_sha256", dig_job_plan, digs_sha256, REQUIRED, .least = 64),
     TEXT(dig_job_plan, engine),
     TEXT(dig_job_plan, version),
-    WHOLE(tasks),
-    WHOLE(beds),
-    WHOLE(trajectories),
-    CYAML_FIELD_END,
+    WHOLE(tasks, 1, DIG_JOB_TASKS_MAX),
+    WHOLE(beds, 1, BEDS_MAX),
+    WHOLE(trajectories, 1, DIG_TRAJECTORY_MAX),
+    END,
 };
 
-static const cyaml_schema_value_t schema = FILE_OF(dig_job_plan, fields);
+static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct dig_job_plan) };
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
     const struct dig_job_plan *const plan = loaded;
     (void)path;
     // It stands in command lines and is what a queue is asked for.
     dig_require(c, dig_name_ok(plan->job), "job: \"%s\", expected " DIG_NAME_RULE, plan->job);
-    dig_require(c, plan->tasks >= 1 && plan->tasks <= DIG_JOB_TASKS_MAX,
-                "tasks: %zu, expected 1 to %d", plan->tasks, DIG_JOB_TASKS_MAX);
-    dig_require(c, plan->beds >= plan->tasks && plan->beds <= BEDS_MAX,
-                "beds: %zu, expected %zu (the tasks) to %d", plan->beds, plan->tasks, BEDS_MAX);
-    dig_require(c, plan->trajectories >= 1 && plan->trajectories <= DIG_TRAJECTORY_MAX,
-                "trajectories: %zu, expected 1 to %d", plan->trajectories, DIG_TRAJECTORY_MAX);
+    dig_require(c, plan->beds >= plan->tasks, "beds: %zu, expected %zu (the tasks) or more",
+                plan->beds, plan->tasks);
     if (c->status == DIG_OK) {
         *(struct dig_job_plan *)into = *plan;
     }

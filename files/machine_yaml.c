@@ -3,23 +3,25 @@
 #include "core/geometry.h"
 #include "core/units.h"
 #include "files/yaml/yaml.h"
-#include "files/yaml/yaml_schema.h"
 
-// A machine of either kind, angles still in degrees; what the other kind has stays 0.
+// A machine of either kind; what the other kind has stays 0.
 struct machine_text {
     struct dig_machine machine;
-    char              *source;
+    bool               has_tolerance;
 };
 
-static const cyaml_schema_field_t link_fields[] = {
+#define ANGLE(key, type, member)                                                                   \
+    FIELD(NUMBER, key, type, member, REQUIRED, .factor = DIG_RAD_PER_DEG)
+
+static const struct dig_yaml_field link_fields[] = {
     NUMBER(dig_link, length_m),
     NUMBER(dig_link, mass_kg),
     NUMBERS("com_m", REQUIRED, dig_link, com_m),
     NUMBER(dig_link, inertia_kgm2),
-    CYAML_FIELD_FLOAT("min_deg", REQUIRED, struct dig_link, min_rad),
-    CYAML_FIELD_FLOAT("max_deg", REQUIRED, struct dig_link, max_rad),
+    ANGLE("min_deg", dig_link, min_rad),
+    ANGLE("max_deg", dig_link, max_rad),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
 #define CYLINDER_FIELDS                                                                            \
@@ -29,52 +31,51 @@ static const cyaml_schema_field_t link_fields[] = {
         NUMBERS("base_m", REQUIRED, dig_cylinder, base_m),                                         \
         NUMBER(dig_cylinder, pressure_sigma_Pa), SOURCE
 
-static const cyaml_schema_field_t cylinder_fields[] = {
+static const struct dig_yaml_field cylinder_fields[] = {
     CYLINDER_FIELDS,
     NUMBERS("eye_m", REQUIRED, dig_cylinder, eye_m),
-    CYAML_FIELD_END,
+    END,
 };
 
 // The bucket cylinder's eye is the joint of rocker and link, so it has no place of its own.
-static const cyaml_schema_field_t bucket_cylinder_fields[] = {
+static const struct dig_yaml_field bucket_cylinder_fields[] = {
     CYLINDER_FIELDS,
-    CYAML_FIELD_END,
+    END,
 };
 
-#define CYLINDER(key, joint, fields)                                                               \
-    CYAML_FIELD_MAPPING(key, REQUIRED, struct dig_machine, cylinder[joint], fields)
+#define CYLINDER(key, joint, fields) PART(key, REQUIRED, dig_machine, cylinder[joint], fields)
 
-static const cyaml_schema_field_t cylinders_fields[] = {
+static const struct dig_yaml_field cylinders_fields[] = {
     CYLINDER("boom", DIG_JOINT_BOOM, cylinder_fields),
     CYLINDER("arm", DIG_JOINT_ARM, cylinder_fields),
     CYLINDER("bucket", DIG_JOINT_BUCKET, bucket_cylinder_fields),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_field_t four_bar_fields[] = {
+static const struct dig_yaml_field four_bar_fields[] = {
     NUMBERS("rocker_pin_m", REQUIRED, dig_four_bar, rocker_pin_m),
     NUMBER(dig_four_bar, rocker_m),
     NUMBER(dig_four_bar, link_m),
     NUMBERS("ear_m", REQUIRED, dig_four_bar, ear_m),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_field_t sensors_fields[] = {
+static const struct dig_yaml_field sensors_fields[] = {
     NUMBER(dig_machine, pressure_step_Pa),
     NUMBER(dig_machine, angle_step_rad),
     NUMBER(dig_machine, angle_sigma_rad),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_field_t tolerance_fields[] = {
+static const struct dig_yaml_field tolerance_fields[] = {
     NUMBER(dig_tolerance, pin_m),
     NUMBER(dig_tolerance, mass_share),
     NUMBER(dig_tolerance, com_share),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
 // Without `tolerance` in the file; ours. A machine measured with a tape, its masses and centres
@@ -82,19 +83,19 @@ static const cyaml_schema_field_t tolerance_fields[] = {
 static const struct dig_tolerance measured = { 2.0e-3, 0.05, 0.02 };
 static const struct dig_tolerance machined = { 2.0e-4, 0.01, 0.01 };
 
-static const cyaml_schema_field_t ground_fields[] = {
+static const struct dig_yaml_field ground_fields[] = {
     NUMBER(dig_machine, weight_N),
     NUMBER(dig_machine, weight_X_m),
     NUMBER(dig_machine, tip_front_X_m),
     NUMBER(dig_machine, tip_rear_X_m),
     NUMBER(dig_machine, boom_foot_Z_m),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-static const cyaml_schema_field_t force_sensor_fields[] = {
+static const struct dig_yaml_field force_sensor_fields[] = {
     NUMBERS("place_m", REQUIRED, dig_force_sensor, place_m),
-    CYAML_FIELD_FLOAT("turn_deg", REQUIRED, struct dig_force_sensor, turn_rad),
+    ANGLE("turn_deg", dig_force_sensor, turn_rad),
     NUMBER(dig_force_sensor, limit_N),
     NUMBER(dig_force_sensor, limit_Nm),
     NUMBER(dig_force_sensor, step_N),
@@ -103,76 +104,74 @@ static const cyaml_schema_field_t force_sensor_fields[] = {
     NUMBER(dig_force_sensor, sigma_Nm),
     NUMBER(dig_force_sensor, path_sigma_m),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
 // A rig has no pressures.
-static const cyaml_schema_field_t rig_sensors_fields[] = {
+static const struct dig_yaml_field rig_sensors_fields[] = {
     NUMBER(dig_machine, angle_step_rad),
     NUMBER(dig_machine, angle_sigma_rad),
     SOURCE,
-    CYAML_FIELD_END,
+    END,
 };
 
-#define PART(key, member, fields)                                                                  \
-    CYAML_FIELD_MAPPING(key, REQUIRED, struct machine_text, member, fields)
+#define OF_MACHINE(key, member, fields) PART(key, REQUIRED, machine_text, machine.member, fields)
+#define WHOLE(key, fields)              PART(key, REQUIRED, machine_text, machine, fields)
 
 // What both kinds have.
 #define NAME                                                                                       \
-    CYAML_FIELD_STRING("name", REQUIRED, struct machine_text, machine.name, 1),                    \
-        CYAML_FIELD_STRING_PTR("source", REQUIRED, struct machine_text, source, 1,                 \
-                               CYAML_UNLIMITED)
+    FIELD(TEXT, "name", machine_text, machine.name, REQUIRED, .least = 1),                         \
+    {                                                                                              \
+        .key = "source", .kind = DIG_YAML_TEXT, .least = 1                                         \
+    }
 #define BUCKET                                                                                     \
-    PART("bucket", machine.link[DIG_JOINT_BUCKET], link_fields),                                   \
-        CYAML_FIELD_FLOAT("bucket_width_m", REQUIRED, struct machine_text, machine.bucket_width_m)
+    OF_MACHINE("bucket", link[DIG_JOINT_BUCKET], link_fields),                                     \
+        FIELD(NUMBER, "bucket_width_m", machine_text, machine.bucket_width_m, REQUIRED)
 #define TOLERANCE                                                                                  \
-    CYAML_FIELD_MAPPING("tolerance", OPTIONAL, struct machine_text, machine.tolerance,             \
-                        tolerance_fields)
+    FIELD(MAPPING, "tolerance", machine_text, machine.tolerance, OPTIONAL, .of = tolerance_fields, \
+          GIVEN(machine_text, has_tolerance))
 
-static const cyaml_schema_field_t rig_fields[] = {
+static const struct dig_yaml_field rig_fields[] = {
     NAME,
     BUCKET,
-    PART("force_sensor", machine.sensor, force_sensor_fields),
-    PART("sensors", machine, rig_sensors_fields),
+    FIELD(MAPPING, "force_sensor", machine_text, machine.sensor, REQUIRED,
+          .of = force_sensor_fields, GIVEN(machine_text, machine.sensor.fitted)),
+    WHOLE("sensors", rig_sensors_fields),
     TOLERANCE,
-    CYAML_FIELD_END,
+    END,
 };
-static const cyaml_schema_value_t rig_schema = FILE_OF(machine_text, rig_fields);
+static const struct dig_yaml_file rig = { .of = rig_fields, .size = sizeof(struct machine_text) };
 
-static const cyaml_schema_field_t machine_fields[] = {
+static const struct dig_yaml_field machine_fields[] = {
     NAME,
-    PART("boom", machine.link[DIG_JOINT_BOOM], link_fields),
-    PART("arm", machine.link[DIG_JOINT_ARM], link_fields),
+    OF_MACHINE("boom", link[DIG_JOINT_BOOM], link_fields),
+    OF_MACHINE("arm", link[DIG_JOINT_ARM], link_fields),
     BUCKET,
-    PART("cylinders", machine, cylinders_fields),
-    PART("four_bar", machine.four_bar, four_bar_fields),
-    PART("sensors", machine, sensors_fields),
+    WHOLE("cylinders", cylinders_fields),
+    OF_MACHINE("four_bar", four_bar, four_bar_fields),
+    WHOLE("sensors", sensors_fields),
     TOLERANCE,
-    PART("ground", machine, ground_fields),
-    CYAML_FIELD_END,
+    WHOLE("ground", ground_fields),
+    END,
 };
-static const cyaml_schema_value_t schema = FILE_OF(machine_text, machine_fields);
+static const struct dig_yaml_file digger = { .of   = machine_fields,
+                                             .size = sizeof(struct machine_text) };
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
-    struct dig_machine machine = ((const struct machine_text *)loaded)->machine;
-    for (int j = 0; j < DIG_JOINTS; j++) {
-        machine.link[j].min_rad *= DIG_RAD_PER_DEG;
-        machine.link[j].max_rad *= DIG_RAD_PER_DEG;
+    struct machine_text *const text    = loaded;
+    struct dig_machine *const  machine = &text->machine;
+    (void)path;
+    if (!text->has_tolerance) {
+        machine->tolerance = machine->sensor.fitted ? machined : measured;
     }
-    machine.sensor.turn_rad *= DIG_RAD_PER_DEG;
-    machine.sensor.fitted = dig_yaml_line(path, "force_sensor") > 0;
-    if (dig_yaml_line(path, "tolerance") <= 0) {
-        machine.tolerance = machine.sensor.fitted ? machined : measured;
-    }
-
-    c->status = dig_machine_check(&machine, c->error);
+    c->status = dig_machine_check(machine, c->error);
     if (c->status == DIG_OK) {
-        c->status = dig_geometry_check(&machine, c->error);
+        c->status = dig_geometry_check(machine, c->error);
     }
     if (c->status == DIG_OK) {
-        *(struct dig_machine *)into = machine;
+        *(struct dig_machine *)into = *machine;
     }
 }
 
@@ -180,5 +179,5 @@ enum dig_status dig_machine_read(const char *const path, struct dig_machine *con
                                  struct dig_error *const error)
 {
     const bool senses = dig_yaml_line(path, "force_sensor") > 0;
-    return dig_yaml_read(path, senses ? &rig_schema : &schema, take, machine, error);
+    return dig_yaml_read(path, senses ? &rig : &digger, take, machine, error);
 }

@@ -26,7 +26,7 @@ core                   approach bed bed_plan chance command_line contact curve d
                        geometry gravel_match ground linkage log_normal machine markup model name observation outline part process
                        recording regular room sample scene sha256 shell similar sort status streams table_step text units vec2
 files/text             whole | csv
-files/yaml             yaml yaml_schema
+files/yaml             yaml | yaml_schema
 files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
 files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json job_plan machine_yaml model_json
                        recording_csv scene_yaml
@@ -81,8 +81,7 @@ modbus       firmware_host/bus/input_modbus.c firmware_host/bus/modbus_tcp. tool
 linux/can    firmware_host/bus/input_can.c firmware_host/bus/can_message. tools/rig/
 lcm/         firmware_host/publish/output_lcm.c files/lcm/lcm_log.c
 curses.h     tools/digwatch/terminal.c
-cyaml/       files/ firmware_host/config/
-yaml.h       files/ firmware_host/config/
+yaml.h       files/yaml/
 sqlite3.h    tables/
 nettle/      core/sha256.h
 ode/         offline_dem/

@@ -2,19 +2,21 @@
 
 #include "core/curve.h"
 
-const cyaml_schema_value_t dig_yaml_number = { CYAML_VALUE_FLOAT(REQUIRED, double) };
+const struct dig_yaml_field dig_yaml_number = { .kind = DIG_YAML_NUMBER, .size = sizeof(double) };
 
-const cyaml_schema_value_t dig_yaml_name = { CYAML_VALUE_STRING(REQUIRED, char[DIG_NAME_SIZE], 1,
-                                                                DIG_NAME_SIZE - 1) };
+const struct dig_yaml_field dig_yaml_name = { .kind  = DIG_YAML_TEXT,
+                                              .size  = DIG_NAME_SIZE,
+                                              .least = 1 };
 
-const cyaml_schema_value_t dig_yaml_point = { CYAML_VALUE_SEQUENCE_FIXED(REQUIRED, double,
-                                                                         &dig_yaml_number, 2) };
+const struct dig_yaml_field dig_yaml_point = { .kind = DIG_YAML_LIST,
+                                               .size = sizeof(struct dig_yaml_point),
+                                               .of   = &dig_yaml_number };
 
-#define AXIS(key, axis) CYAML_FIELD_FLOAT(key, REQUIRED, struct dig_gravel, value[axis])
+#define AXIS(key, axis) FIELD(NUMBER, key, dig_gravel, value[axis], REQUIRED)
 
-const cyaml_schema_field_t dig_yaml_gravel[] = {
+const struct dig_yaml_field dig_yaml_gravel[] = {
     AXIS("friction", DIG_AXIS_FRICTION),
     AXIS("rolling", DIG_AXIS_ROLLING),
     AXIS("density_kgpm3", DIG_AXIS_DENSITY_kgpm3),
-    CYAML_FIELD_END,
+    END,
 };

@@ -1,30 +1,26 @@
-// A YAML text as a tree with line numbers, and what is wrong with it in the eyes of a schema.
-// Internal to files/: libcyaml loads, this explains.
+// A YAML text as a tree with line numbers, and how a schema takes it. Internal to files/.
 
 #ifndef DIG_FILES_YAML_YAML_TREE_H
 #define DIG_FILES_YAML_YAML_TREE_H
 
 #include "core/error.h"
+#include "files/yaml/yaml_schema.h"
 
-#include <cyaml/cyaml.h>
 #include <yaml.h>
 
-/// Refuses a text that its aliases make grow without bounds, or that nests without: 100000 values
-/// that aliases stand for, 64 deep. What is no YAML passes. O(size).
-DIG_MUST_CHECK enum dig_status dig_yaml_check_growth(const char *path, const char *text,
-                                                     size_t size, struct dig_error *error);
-
 /// Parses text, the content of path, into *document (free with yaml_document_delete()). Refuses
-/// syntax errors, an empty text, a second document, and what dig_yaml_check_growth() does, with
-/// file and line.
+/// syntax errors, an empty text, a second document, and what would take libyaml minutes or a GB,
+/// with file and line.
 DIG_MUST_CHECK enum dig_status dig_yaml_parse(const char *path, const char *text, size_t size,
                                               yaml_document_t *document, struct dig_error *error);
 
-/// Refuses the first thing in the document that does not fit the schema: a key unknown, missing or
-/// given twice, a value of the wrong type or length, a number that is not finite.
-DIG_MUST_CHECK enum dig_status dig_yaml_check(const char *path, yaml_document_t *document,
-                                              const cyaml_schema_value_t *schema,
-                                              struct dig_error           *error);
+/// Writes the values of the document into the struct of the fields; keys that are absent leave it
+/// as it is. Refuses the first thing that does not fit: a key unknown, missing or given twice, a
+/// value of the wrong type, length or range, a number that is not finite. The struct is half
+/// written then.
+DIG_MUST_CHECK enum dig_status dig_yaml_load(const char *path, yaml_document_t *document,
+                                             const struct dig_yaml_field fields[], void *into,
+                                             struct dig_error *error);
 
 /// The node at a dotted key, or the deepest one on the way to it; *found says which.
 const yaml_node_t *dig_yaml_find(yaml_document_t *document, const char *key, int *found);

@@ -2,131 +2,167 @@
 
 #include "core/name.h"
 #include "files/yaml/yaml.h"
-#include "firmware_host/config/config_text.h"
 
 #include <arpa/inet.h>
 #include <assert.h>
 #include <netinet/in.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define DEFAULT_LCM_URL "udpm://239.255.76.67:7667?ttl=0"
 
-// Where the settings of a kind stand; those of another are passed over.
-static const char *const parts[] = {
-    [DIG_INPUT_CAN]        = "input.can",
-    [DIG_INPUT_MODBUS_TCP] = "input.modbus",
-    [DIG_INPUT_MODBUS_RTU] = "input.modbus",
-    [DIG_INPUT_REPLAY]     = "input.replay",
+// The settings, beside what they are made of. What is not known before the kind of input is 0.
+struct config_text {
+    struct dig_config    config;
+    struct dig_file_name modbus_map;
+    char                 address[256];
+    bool                 has_can, has_modbus, has_replay;
 };
 
-// A number: what the file may say, and what is kept of it.
-struct number {
-    const char *key;
-    size_t      at; // in struct dig_config
-    bool        whole;
-    double      least, most; // in the file's unit
-    double      factor;      // from there to what is kept; 0: the inverse is kept
+static const struct dig_yaml_word kinds[] = {
+    [DIG_INPUT_CAN]        = { "can", DIG_INPUT_CAN },
+    [DIG_INPUT_MODBUS_TCP] = { "modbus-tcp", DIG_INPUT_MODBUS_TCP },
+    [DIG_INPUT_MODBUS_RTU] = { "modbus-rtu", DIG_INPUT_MODBUS_RTU },
+    [DIG_INPUT_REPLAY]     = { "replay", DIG_INPUT_REPLAY },
+    { .word = NULL },
+};
+static const struct dig_yaml_word parities[] = {
+    { "none", 'N' }, { "even", 'E' }, { "odd", 'O' }, { .word = NULL }
 };
 
-#define AT(member) offsetof(struct dig_config, member)
+// A setting: its key, where it goes, the least and the most that the file may say. A time may be
+// said as a frequency.
+#define OF(kind, key, member, ...) FIELD(kind, key, config_text, config.member, __VA_ARGS__)
+#define REAL(key, member, least, most)                                                             \
+    OF(NUMBER, key, member, OPTIONAL, .low = (least), .high = (most))
+#define IN_UNITS(key, member, least, most, unit)                                                   \
+    OF(NUMBER, key, member, OPTIONAL, .low = (least), .high = (most), .factor = (unit))
+#define IN_HZ(key, member, least, most) IN_UNITS(key, member, least, most, -1.0)
+#define WHOLE(key, member, least, most)                                                            \
+    OF(WHOLE, key, member, OPTIONAL, .low = (least), .high = (most))
+#define WORDS(key, member, flag) OF(TEXT, key, member, flag, .least = 1)
 
-static const struct number numbers[] = {
-    { "tick_Hz", AT(tick_s), false, 100.0, 2000.0, 0.0 },
-    { "stale_ms", AT(stale_s), false, 1.0, 60e3, 1e-3 },
-    { "time_scale", AT(time_scale), false, 0.01, 100.0, 1.0 },
-    { "input.modbus.poll_Hz", AT(modbus.poll_s), false, 1.0, 1000.0, 0.0 },
-    { "input.modbus.baud", AT(modbus.baud), true, 1200, 4000000, 1.0 },
-    { "input.modbus.unit", AT(modbus.unit), true, 0, 247, 1.0 },
-    { "input.replay.speed", AT(replay_speed), false, 0.01, 100.0, 1.0 },
-    { "estimator.sample_s", AT(estimator.tick_s), false, 0.001, 0.1, 1.0 },
-    { "estimator.contact_sigmas", AT(estimator.contact_sigmas), false, 1.0, 100.0, 1.0 },
-    { "estimator.contact_hold_s", AT(estimator.contact_hold_s), false, 0.0, 10.0, 1.0 },
-    { "estimator.exit_hold_s", AT(estimator.exit_hold_s), false, 0.0, 10.0, 1.0 },
-    { "estimator.air_bias_s", AT(estimator.air_bias_s), false, 0.0, 1000.0, 1.0 },
-    { "estimator.path_limit_m", AT(estimator.path_limit_m), false, 1e-4, 1.0, 1.0 },
-    { "estimator.outside_floors", AT(estimator.outside_floors), false, 1.0, 100.0, 1.0 },
-    { "realtime.priority", AT(realtime.priority), true, 0, 99, 1.0 },
-    { "realtime.cpu", AT(realtime.cpu), true, -1, 1023, 1.0 },
-    { "publish.prediction_Hz", AT(prediction_s), false, 0.1, 100.0, 0.0 },
-    { "publish.estimate_every", AT(estimate_every), true, 1, 1000, 1.0 },
-    { "match.max_evaluations", AT(match_evaluations), true, 1, 1000000, 1.0 },
-    { "match.least_path", AT(match_least_path), false, 0.01, 1.0, 1.0 },
-    { "match.early_path", AT(match_early_path), false, 0.1, 1.0, 1.0 },
-    { "match.expires_h", AT(match_expires_s), false, 0.01, 1000.0, 3600.0 },
-    { "match.drift_floors", AT(drift_floors), false, 1.0, 1000.0, 1.0 },
+static const struct dig_yaml_field can_fields[] = {
+    WORDS("interface", can_interface, REQUIRED),
+    WORDS("dbc", dbc, REQUIRED),
+    WORDS("map", map, REQUIRED),
+    END,
 };
 
-static struct dig_config defaults(void)
-{
-    return (struct dig_config){
-        .modbus            = { .baud = 115200, .parity = 'E', .unit = 1, .poll_s = 1.0 / 200.0 },
-        .replay_speed      = 1.0,
-        .tick_s            = 1.0 / 1000.0,
-        .stale_s           = 0.1,
-        .time_scale        = 1.0,
-        .realtime          = { .priority = 80, .lock_memory = true, .cpu = -1 },
-        .lcm_url           = DEFAULT_LCM_URL,
-        .estimator         = dig_estimator_settings_default(),
-        .match_evaluations = 2000,
-        .match_least_path  = 0.6,
-        .match_early_path  = 0.3,
-        .match_expires_s   = 12.0 * 3600.0,
-        .drift_floors      = 3.0,
-        .estimate_every    = 1,
-        .prediction_s      = 1.0 / 15.0,
-    };
-}
-
-// What is being read, into which settings, and what is found wrong with it.
-struct work {
-    const char                   *path;
-    const struct dig_config_text *text;
-    struct dig_config            *config;
-    struct dig_conditions        *c;
+static const struct dig_yaml_field modbus_fields[] = {
+    FIELD(TEXT, "address", config_text, address, OPTIONAL, .least = 1),
+    WORDS("device", modbus.device, OPTIONAL),
+    WHOLE("baud", modbus.baud, 1200, 4000000),
+    OF(WORD, "parity", modbus.parity, OPTIONAL, .word = parities),
+    WHOLE("unit", modbus.unit, 0, 247),
+    FIELD(TEXT, "map", config_text, modbus_map, REQUIRED, .least = 1),
+    IN_HZ("poll_Hz", modbus.poll_s, 1.0, 1000.0),
+    END,
 };
 
-static bool is_given(const struct work *const work, const char *const key)
-{
-    return dig_yaml_line(work->path, key) > 0;
-}
+static const struct dig_yaml_field replay_fields[] = {
+    WORDS("file", replay, REQUIRED),
+    REAL("speed", replay_speed, 0.01, 100.0),
+    END,
+};
 
-static bool is_passed_over(const struct work *const work, const char *const key)
-{
-    const char *const part = parts[work->config->kind];
-    return strncmp(key, "input.", 6) == 0 && strncmp(key, part, strlen(part)) != 0;
-}
-
-static void take_numbers(const struct work *const work)
-{
-    for (size_t i = 0; i < CYAML_ARRAY_LEN(numbers); i++) {
-        const struct number *const n     = &numbers[i];
-        const void *const          from  = (const char *)&work->text->config + n->at;
-        void *const                to    = (char *)work->config + n->at;
-        const double               value = n->whole ? *(const int *)from : *(const double *)from;
-        if (is_passed_over(work, n->key) || !is_given(work, n->key)) {
-            continue;
-        }
-        dig_require(work->c, value >= n->least && value <= n->most,
-                    n->whole ? "%s: %.0f, expected %.0f … %.0f" : "%s: %g, expected %g … %g",
-                    n->key, value, n->least, n->most);
-        if (n->whole) {
-            *(int *)to = (int)value;
-        } else {
-            *(double *)to = n->factor > 0.0 ? value * n->factor : 1.0 / value;
-        }
+#define KIND(key_, fields_, has)                                                                   \
+    {                                                                                              \
+        .key = (key_), .kind = DIG_YAML_MAPPING, OPTIONAL, .of = (fields_),                        \
+        GIVEN(config_text, has)                                                                    \
     }
-}
 
-// from: NULL where absent.
-static void take_text(const struct work *const work, const char *const key, const char *const from,
-                      const size_t size, char to[])
+static const struct dig_yaml_field input_fields[] = {
+    OF(WORD, "kind", kind, REQUIRED, .word = kinds),
+    KIND("can", can_fields, has_can),
+    KIND("modbus", modbus_fields, has_modbus),
+    KIND("replay", replay_fields, has_replay),
+    END,
+};
+
+static const struct dig_yaml_field realtime_fields[] = {
+    WHOLE("priority", realtime.priority, 0, 99),
+    WHOLE("cpu", realtime.cpu, -1, 1023),
+    OF(BOOL, "lock_memory", realtime.lock_memory, OPTIONAL),
+    END,
+};
+
+static const struct dig_yaml_field lcm_fields[] = { WORDS("url", lcm_url, OPTIONAL), END };
+
+static const struct dig_yaml_field estimator_fields[] = {
+    REAL("sample_s", estimator.tick_s, 0.001, 0.1),
+    REAL("contact_sigmas", estimator.contact_sigmas, 1.0, 100.0),
+    REAL("contact_hold_s", estimator.contact_hold_s, 0.0, 10.0),
+    REAL("exit_hold_s", estimator.exit_hold_s, 0.0, 10.0),
+    REAL("air_bias_s", estimator.air_bias_s, 0.0, 1000.0),
+    REAL("path_limit_m", estimator.path_limit_m, 1e-4, 1.0),
+    REAL("outside_floors", estimator.outside_floors, 1.0, 100.0),
+    END,
+};
+
+static const struct dig_yaml_field match_fields[] = {
+    WHOLE("max_evaluations", match_evaluations, 1, 1000000),
+    WORDS("state", match_state, OPTIONAL),
+    REAL("least_path", match_least_path, 0.01, 1.0),
+    REAL("early_path", match_early_path, 0.1, 1.0),
+    IN_UNITS("expires_h", match_expires_s, 0.01, 1000.0, 3600.0),
+    REAL("drift_floors", drift_floors, 1.0, 1000.0),
+    END,
+};
+
+static const struct dig_yaml_field identify_fields[] = {
+    LIST("trajectories", REQUIRED, config_text, config.identify_trajectory,
+         config.identify_trajectories, &dig_yaml_name, 1),
+    END,
+};
+
+static const struct dig_yaml_field publish_fields[] = {
+    WHOLE("estimate_every", estimate_every, 1, 1000),
+    IN_HZ("prediction_Hz", prediction_s, 0.1, 100.0),
+    END,
+};
+
+static const struct dig_yaml_field fields[] = {
+    WORDS("table", table, REQUIRED),
+    WORDS("machine", machine, REQUIRED),
+    WORDS("scene", scene, OPTIONAL),
+    WORDS("model", model, OPTIONAL),
+    ACROSS("input", REQUIRED, input_fields),
+    IN_HZ("tick_Hz", tick_s, 100.0, 2000.0),
+    IN_UNITS("stale_ms", stale_s, 1.0, 60e3, 1e-3),
+    REAL("time_scale", time_scale, 0.01, 100.0),
+    ACROSS("realtime", OPTIONAL, realtime_fields),
+    ACROSS("lcm", OPTIONAL, lcm_fields),
+    ACROSS("estimator", OPTIONAL, estimator_fields),
+    ACROSS("match", OPTIONAL, match_fields),
+    ACROSS("identify", OPTIONAL, identify_fields),
+    ACROSS("publish", OPTIONAL, publish_fields),
+    END,
+};
+
+static struct config_text defaults(void)
 {
-    const int length = from != NULL ? snprintf(to, size, "%s", from) : 0;
-    dig_require(work->c, length >= 0 && (size_t)length < size,
-                "%s: %d characters, expected at most %zu", key, length, size - 1);
+    struct config_text text = {
+        .config = {
+            .modbus            = { .baud = 115200, .parity = 'E', .unit = 1, .poll_s = 1.0 / 200.0 },
+            .replay_speed      = 1.0,
+            .tick_s            = 1.0 / 1000.0,
+            .stale_s           = 0.1,
+            .realtime          = { .priority = 80, .lock_memory = true, .cpu = -1 },
+            .lcm_url           = DEFAULT_LCM_URL,
+            .estimator         = dig_estimator_settings_default(),
+            .match_evaluations = 2000,
+            .match_least_path  = 0.6,
+            .match_early_path  = 0.3,
+            .match_expires_s   = 12.0 * 3600.0,
+            .drift_floors      = 3.0,
+            .estimate_every    = 1,
+            .prediction_s      = 1.0 / 15.0,
+        },
+    };
+    text.config.estimator.tick_s = 0.0;
+    return text;
 }
 
 // Of LCM's own kinds those that publish: a multicast group, or a log file. Of a network that is
@@ -151,41 +187,9 @@ static bool is_lcm_url(const char *const text)
            (inet_pton(AF_INET, address, &group) == 1 && IN_MULTICAST(ntohl(group.s_addr)));
 }
 
-static void take_texts(const struct work *const work)
-{
-    const struct dig_config_text *const text   = work->text;
-    struct dig_config *const            config = work->config;
-    const struct {
-        const char           *key, *from;
-        struct dig_file_name *to; // relative to the configuration's folder
-    } path[] = {
-        { "table", text->table, &config->table },
-        { "machine", text->machine, &config->machine },
-        { "model", text->model, &config->model },
-        { "input.can.dbc", text->dbc, &config->dbc },
-        { "input.can.map", text->can_map, &config->map },
-        { "input.modbus.map", text->modbus_map, &config->map },
-        { "input.replay.file", text->replay, &config->replay },
-        { "match.state", text->match_state, &config->match_state },
-    };
-    for (size_t i = 0; i < CYAML_ARRAY_LEN(path); i++) {
-        if (path[i].from != NULL && !is_passed_over(work, path[i].key)) {
-            dig_require(work->c,
-                        dig_path_beside(work->path, path[i].from, sizeof path[i].to->text,
-                                        path[i].to->text),
-                        "%s: too long a path", path[i].key);
-        }
-    }
-    dig_require(work->c, text->lcm_url == NULL || is_lcm_url(text->lcm_url),
-                "lcm.url: \"%.60s\", expected udpm://GROUP:PORT with a multicast group",
-                text->lcm_url != NULL ? text->lcm_url : "");
-    take_text(work, "scene", text->scene, sizeof config->scene, config->scene);
-    take_text(work, "lcm.url", text->lcm_url, sizeof config->lcm_url, config->lcm_url);
-}
-
 // "127.0.0.1:1502" or "[::1]:1502"
-static void take_address(const struct work *const work, const char *const text,
-                         struct dig_modbus_address *const address)
+static void take_address(const char *const text, struct dig_modbus_address *const address,
+                         struct dig_conditions *const c)
 {
     const char *const colon  = strrchr(text, ':');
     const size_t      length = colon != NULL ? (size_t)(colon - text) : 0;
@@ -193,7 +197,7 @@ static void take_address(const struct work *const work, const char *const text,
     const long        port   = colon != NULL ? strtol(colon + 1, &end, 10) : 0;
     const bool        is     = length > 0 && length < sizeof address->host && end != NULL &&
                     end != colon + 1 && *end == '\0' && port >= 1 && port <= 65535;
-    dig_require(work->c, is, "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
+    dig_require(c, is, "input.modbus.address: \"%.60s\", expected HOST:PORT", text);
     if (is) {
         const bool brackets = text[0] == '[' && length > 2 && text[length - 1] == ']';
         memcpy(address->host, text + brackets, length - 2 * (size_t)brackets);
@@ -202,93 +206,88 @@ static void take_address(const struct work *const work, const char *const text,
     }
 }
 
-static void take_parity(const struct work *const work, const char *const text,
-                        struct dig_modbus_address *const address)
+// Takes the settings of the kind of input; those of another stay unused. Returns the time between
+// two samples.
+static double take_input(struct config_text *const text, struct dig_conditions *const c)
 {
-    static const char *const words[] = { "none", "even", "odd" };
-    size_t                   i       = 0;
-    while (i < CYAML_ARRAY_LEN(words) && strcmp(text, words[i]) != 0) {
-        i++;
-    }
-    dig_require(work->c, i < CYAML_ARRAY_LEN(words),
-                "input.modbus.parity: \"%.20s\", expected none, even or odd", text);
-    address->parity = "NEO"[i];
-}
-
-static void take_server(const struct work *const work)
-{
-    const struct dig_config_text *const text    = work->text;
-    struct dig_modbus_address *const    address = &work->config->modbus;
-    const bool                          tcp     = work->config->kind == DIG_INPUT_MODBUS_TCP;
-    const char *const                   key = tcp ? "input.modbus.address" : "input.modbus.device";
-    const char *const                   at  = tcp ? text->address : text->device;
-    dig_require(work->c, at != NULL, "%s: missing, expected %s", key,
-                tcp ? "HOST:PORT" : "a serial device");
-    if (at != NULL && tcp) {
-        take_address(work, at, address);
-    } else {
-        take_text(work, key, at, sizeof address->device, address->device);
-    }
-    if (text->parity != NULL) {
-        take_parity(work, text->parity, address);
-    }
-}
-
-static void take_input(const struct work *const work)
-{
-    struct dig_config *const config   = work->config;
-    double                   sample_s = config->modbus.poll_s;
-    dig_require(work->c, is_given(work, parts[config->kind]),
-                "%s: missing, expected the settings of %s", parts[config->kind],
-                dig_config_kinds[config->kind].str);
+    struct dig_config *const config = &text->config;
+    const char *const        kind   = kinds[config->kind].word;
     switch (config->kind) {
     case DIG_INPUT_CAN:
-        sample_s = 0.01; // the cycle of pressures and angles
-        take_text(work, "input.can.interface", work->text->interface, sizeof config->can_interface,
-                  config->can_interface);
-        break;
+        dig_require(c, text->has_can, "input.can: missing, expected the settings of %s", kind);
+        return 0.01; // the cycle of pressures and angles
     case DIG_INPUT_MODBUS_TCP:
-    case DIG_INPUT_MODBUS_RTU: take_server(work); break;
+    case DIG_INPUT_MODBUS_RTU:
+        dig_require(c, text->has_modbus, "input.modbus: missing, expected the settings of %s",
+                    kind);
+        config->map = text->modbus_map;
+        break;
     case DIG_INPUT_REPLAY:
-        sample_s = 0.005; // what digrig records at
-        dig_require(work->c, !is_given(work, "time_scale"),
+        dig_require(c, text->has_replay, "input.replay: missing, expected the settings of %s",
+                    kind);
+        dig_require(c, !(config->time_scale > 0.0),
                     "time_scale: given with a replay, expected input.replay.speed alone");
         config->time_scale = config->replay_speed;
-        break;
+        return 0.005; // what digrig records at
     }
-    if (!is_given(work, "estimator.sample_s")) {
-        config->estimator.tick_s = sample_s;
+    if (config->kind == DIG_INPUT_MODBUS_RTU) {
+        dig_require(c, config->modbus.device[0] != '\0',
+                    "input.modbus.device: missing, expected a serial device");
+    } else if (text->address[0] == '\0') {
+        dig_require(c, false, "input.modbus.address: missing, expected HOST:PORT");
+    } else {
+        take_address(text->address, &config->modbus, c);
     }
-    dig_require(work->c, config->estimator.tick_s <= DIG_TICK_MOST_s,
-                "estimator.sample_s: missing, expected with input.modbus.poll_Hz below 10");
+    return config->modbus.poll_s;
 }
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
-    struct dig_config              config = defaults();
-    const struct work              work   = { path, loaded, &config, c };
-    const struct dig_config *const given  = &work.text->config;
-
-    config.kind                  = given->kind;
-    config.identify_trajectories = given->identify_trajectories;
-    memcpy(config.identify_trajectory, given->identify_trajectory,
-           sizeof config.identify_trajectory);
-    if (is_given(&work, "realtime.lock_memory")) {
-        config.realtime.lock_memory = given->realtime.lock_memory;
+    struct config_text *const text     = loaded;
+    struct dig_config *const  config   = &text->config;
+    const double              sample_s = take_input(text, c);
+    const struct {
+        const char           *key;
+        struct dig_file_name *file;
+    } files[] = {
+        { "table", &config->table },
+        { "machine", &config->machine },
+        { "model", &config->model },
+        { "input.can.dbc", &config->dbc },
+        { config->kind == DIG_INPUT_CAN ? "input.can.map" : "input.modbus.map", &config->map },
+        { "input.replay.file", &config->replay },
+        { "match.state", &config->match_state },
+    };
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        const struct dig_file_name name = *files[i].file;
+        dig_require(c,
+                    name.text[0] == '\0' ||
+                        dig_path_beside(path, name.text, sizeof name.text, files[i].file->text),
+                    "%s: too long a path", files[i].key);
     }
-    take_numbers(&work);
-    take_texts(&work);
-    take_input(&work);
+    dig_require(c, is_lcm_url(config->lcm_url),
+                "lcm.url: \"%.60s\", expected udpm://GROUP:PORT with a multicast group",
+                config->lcm_url);
+    if (!(config->time_scale > 0.0)) {
+        config->time_scale = 1.0;
+    }
+    if (!(config->estimator.tick_s > 0.0)) {
+        config->estimator.tick_s = sample_s;
+    }
+    dig_require(c, config->estimator.tick_s <= DIG_TICK_MOST_s,
+                "estimator.sample_s: missing, expected with input.modbus.poll_Hz below 10");
     if (c->status == DIG_OK) {
-        *(struct dig_config *)into = config;
+        *(struct dig_config *)into = *config;
     }
 }
 
 enum dig_status dig_config_read(const char *const path, struct dig_config *const config,
                                 struct dig_error *const error)
 {
-    return dig_yaml_read(path, &dig_config_schema, take, config, error);
+    const struct config_text   start  = defaults();
+    const struct dig_yaml_file schema = { .of = fields, .size = sizeof start, .defaults = &start };
+    return dig_yaml_read(path, &schema, take, config, error);
 }
 
 bool dig_config_identifies(const struct dig_config *const config, const char *const trajectory)

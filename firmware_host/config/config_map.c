@@ -12,6 +12,122 @@
 #include <stdio.h>
 #include <string.h>
 
+// The map, beside what it is made of; its groups are the blocks. What is absent is 0, unless a
+// default stands below.
+struct map_text {
+    struct dig_signal_map   map;
+    unsigned                function;
+    struct dig_signal_text  alive;
+    struct dig_message_text messages[DIG_GROUPS_MAX];
+    size_t                  messages_count;
+    struct dig_signal_text  signals[DIG_SIGNALS];
+    size_t                  signals_count;
+};
+static const struct map_text defaults = { .map.stuck_s = 0.5 };
+
+#define NAME(key, flag, type, member) FIELD(TEXT, key, type, member, flag, .least = 1)
+#define MS(key, type, member, most)                                                                \
+    FIELD(NUMBER, key, type, member, OPTIONAL, .low = 0.0, .high = (most), .factor = 1e-3)
+
+static const struct dig_yaml_word kinds[] = { { "can", DIG_MAP_CAN },
+                                              { "modbus", DIG_MAP_MODBUS },
+                                              { .word = NULL } };
+static const struct dig_yaml_word types[] = {
+    { "uint16", DIG_REGISTER_UINT16 },   { "int16", DIG_REGISTER_INT16 },
+    { "uint32", DIG_REGISTER_UINT32 },   { "int32", DIG_REGISTER_INT32 },
+    { "float32", DIG_REGISTER_FLOAT32 }, { .word = NULL },
+};
+static const struct dig_yaml_word signs[]     = { { "1", 1 }, { "-1", -1 }, { .word = NULL } };
+static const struct dig_yaml_word checksums[] = {
+    { "sum8", DIG_CHECKSUM_SUM8 },
+    { "xor8", DIG_CHECKSUM_XOR8 },
+    { "crc8_sae_j1850", DIG_CHECKSUM_CRC8_SAE_J1850 },
+    { "j1939_tsc1", DIG_CHECKSUM_J1939_TSC1 },
+    { .word = NULL },
+};
+
+static const struct dig_yaml_field raw_value = { .kind = DIG_YAML_COUNT, .size = sizeof(uint64_t) };
+
+#define OF(kind, key, member, ...) FIELD(kind, key, dig_signal_text, member, __VA_ARGS__)
+
+// Where a value lies on the bus.
+#define PLACE                                                                                      \
+    NAME("message", OPTIONAL, dig_signal_text, message),                                           \
+        NAME("signal", OPTIONAL, dig_signal_text, signal),                                         \
+        OF(COUNT, "register", entry.reg, OPTIONAL, GIVEN(dig_signal_text, has_reg)),               \
+        OF(WORD, "type", entry.type, OPTIONAL, .word = types)
+
+static const struct dig_yaml_field alive_fields[] = {
+    PLACE,
+    MS("frozen_ms", dig_signal_text, frozen_s, 60e3),
+    END,
+};
+
+static const struct dig_yaml_field signal_fields[] = {
+    NAME("name", REQUIRED, dig_signal_text, name),
+    PLACE,
+    OF(WORD, "sign", sign, OPTIONAL, .word = signs),
+    OF(NUMBER, "scale", entry.scale, OPTIONAL),
+    OF(NUMBER, "offset", entry.offset, OPTIONAL),
+    OF(NUMBER, "min", entry.min, REQUIRED),
+    OF(NUMBER, "max", entry.max, REQUIRED),
+    OF(NUMBER, "max_rate", entry.max_rate, OPTIONAL),
+    LIST("not_available", OPTIONAL, dig_signal_text, entry.not_available_raw, entry.not_available,
+         &raw_value, 0),
+    END,
+};
+static const struct dig_yaml_field signal_value = ENTRY(dig_signal_text, signal_fields);
+
+static const struct dig_yaml_field checksum_fields[] = {
+    NAME("signal", REQUIRED, dig_message_text, checksum_signal),
+    FIELD(WORD, "kind", dig_message_text, checksum, REQUIRED, .word = checksums),
+    END,
+};
+
+static const struct dig_yaml_field message_fields[] = {
+    NAME("message", REQUIRED, dig_message_text, message),
+    NAME("counter", OPTIONAL, dig_message_text, counter),
+    MS("delay_ms", dig_message_text, delay_s, 1000.0),
+    MS("cycle_ms", dig_message_text, cycle_s, 60e3),
+    ACROSS("checksum", OPTIONAL, checksum_fields),
+    END,
+};
+static const struct dig_yaml_field message_value = ENTRY(dig_message_text, message_fields);
+
+#define OF_BLOCK(kind, key, member, ...) FIELD(kind, key, dig_map_group, member, __VA_ARGS__)
+
+static const struct dig_yaml_field block_fields[] = {
+    OF_BLOCK(COUNT, "register", first_register, REQUIRED, .low = 0.0, .high = 65535.0),
+    OF_BLOCK(COUNT, "registers", registers, REQUIRED, .low = 1.0, .high = DIG_REGISTERS_MAX),
+    OF_BLOCK(COUNT, "function", function, OPTIONAL, .low = 3.0, .high = 4.0),
+    OF_BLOCK(NUMBER, "poll_Hz", poll_s, OPTIONAL, .low = 0.01, .high = 1000.0, .factor = -1.0),
+    MS("delay_ms", dig_map_group, frame.delay_s, 1000.0),
+    END,
+};
+static const struct dig_yaml_field block_value = ENTRY(dig_map_group, block_fields);
+
+#define OF_MAP(kind, key, member, ...) FIELD(kind, key, map_text, map.member, __VA_ARGS__)
+
+static const struct dig_yaml_field map_fields[] = {
+    OF_MAP(WORD, "kind", kind, REQUIRED, .word = kinds),
+    // 4, the default: input registers; 3: holding registers.
+    FIELD(COUNT, "function", map_text, function, OPTIONAL, .low = 3.0, .high = 4.0),
+    OF_MAP(BOOL, "low_word_first", low_word_first, OPTIONAL),
+    OF_MAP(BOOL, "j1939", j1939, OPTIONAL),
+    MS("coherent_ms", map_text, map.coherent_s, 1000.0),
+    MS("stuck_ms", map_text, map.stuck_s, 60e3),
+    LIST("messages", OPTIONAL, map_text, messages, messages_count, &message_value, 0),
+    LIST("blocks", OPTIONAL, map_text, map.group, map.groups, &block_value, 0),
+    FIELD(MAPPING, "alive", map_text, alive, OPTIONAL, .of = alive_fields,
+          GIVEN(map_text, map.has_alive)),
+    LIST("signals", REQUIRED, map_text, signals, signals_count, &signal_value, 1),
+    END,
+};
+
+static const struct dig_yaml_file schema = { .of       = map_fields,
+                                             .size     = sizeof(struct map_text),
+                                             .defaults = &defaults };
+
 // Where a value lies on the map's bus.
 static void find_place(const struct dig_config_map_work *const work, const char *const at,
                        const struct dig_signal_text *const text, struct dig_map_entry *const entry)
@@ -20,9 +136,8 @@ static void find_place(const struct dig_config_map_work *const work, const char 
         dig_config_map_find_can(work, at, text->message, text->signal, entry);
         return;
     }
-    dig_require(work->c, text->reg != NULL,
+    dig_require(work->c, text->has_reg,
                 "%s.register: missing, expected the register's address, counted from 0", at);
-    entry->reg = text->reg != NULL ? *text->reg : 0;
     dig_require(work->c,
                 entry->reg <= 0xFFFF && entry->reg + dig_register_words(entry->type) <= 0x10000,
                 "%s.register: %u, expected 0 … 65535", at, entry->reg);
@@ -49,8 +164,6 @@ static void read_signal(const struct dig_config_map_work *const work, const size
     const bool           scale_given = fabs(entry.scale) > 0.0;
     dig_require(work->c, !work->map->entry[signal].used,
                 "%s.name: \"%s\" again, expected every signal once", at, text->name);
-    dig_require(work->c, text->sign >= -1 && text->sign <= 1, "%s.sign: %d, expected 1 or -1", at,
-                text->sign);
     dig_require(work->c, entry.min < entry.max, "%s.max: %g, expected more than min %g", at,
                 entry.max, entry.min);
     dig_require(work->c, entry.max_rate >= 0.0, "%s.max_rate: %g, expected 0 (any) or more", at,
@@ -68,34 +181,22 @@ static void read_signal(const struct dig_config_map_work *const work, const size
 static void read_alive(const struct dig_config_map_work *const work,
                        const struct dig_signal_text *const     text)
 {
-    const struct dig_yaml_range  frozen = { "frozen_ms", text->frozen_ms, 0.0, 60e3 };
-    struct dig_signal_map *const map    = work->map;
-
-    map->has_alive   = true;
-    map->alive       = text->entry;
-    map->alive.used  = true;
-    map->alive.sign  = 1.0;
-    map->alive.scale = 1.0;
-    map->frozen_s    = text->frozen_ms > 0.0 ? text->frozen_ms * 1e-3 : 0.5;
+    struct dig_signal_map *const map = work->map;
+    map->alive                       = text->entry;
+    map->alive.used                  = true;
+    map->alive.sign                  = 1.0;
+    map->alive.scale                 = 1.0;
+    map->frozen_s                    = text->frozen_s > 0.0 ? text->frozen_s : 0.5;
     find_place(work, "alive", text, &map->alive);
-    dig_yaml_check_ranges("alive", 1, &frozen, work->c);
 }
 
 // Checks the keys of the map that do not depend on its signals.
 static void check_map(const struct dig_config_map_work *const work,
-                      const struct dig_map_text *const        text)
+                      const struct map_text *const            text)
 {
-    const struct dig_signal_map *const map     = work->map;
-    const bool                         can     = map->kind == DIG_MAP_CAN;
-    const struct dig_yaml_range        range[] = {
-               { "coherent_ms", map->coherent_s, 0.0, 1000.0 },
-               { "stuck_ms", text->stuck_ms != NULL ? *text->stuck_ms : 0.0, 0.0, 60e3 },
-    };
+    const struct dig_signal_map *const map = work->map;
+    const bool                         can = map->kind == DIG_MAP_CAN;
     dig_require(work->c, !can || work->dbc != NULL, "kind: can, expected modbus for this input");
-    dig_require(work->c, text->function == 0 || text->function == 3 || text->function == 4,
-                "function: %u, expected 4 (input registers) or 3 (holding registers)",
-                text->function);
-    dig_yaml_check_ranges("", 2, range, work->c);
     dig_require(work->c, !can || map->groups == 0,
                 "blocks: given for can, expected with kind: modbus only");
     dig_require(work->c, can || (text->messages_count == 0 && !map->j1939),
@@ -103,29 +204,9 @@ static void check_map(const struct dig_config_map_work *const work,
                 map->j1939 ? "j1939" : "messages");
 }
 
-// Checks a block, and what it says in the file's units becomes what the map keeps.
-static void take_block(const struct dig_config_map_work *const work, const size_t index,
-                       const unsigned function, struct dig_map_group *const block)
-{
-    char                        at[32];
-    const double                first   = block->first_register;
-    const struct dig_yaml_range range[] = {
-        { "register", first, 0.0, 65535.0 },
-        { "registers", block->registers, 1.0, fmin(DIG_REGISTERS_MAX, 65536.0 - first) },
-        { "function", block->function, block->function == 0 ? 0.0 : 3.0, 4.0 },
-        { "poll_Hz", block->poll_s, fabs(block->poll_s) > 0.0 ? 0.01 : 0.0, 1000.0 },
-        { "delay_ms", block->frame.delay_s, 0.0, 1000.0 },
-    };
-    (void)snprintf(at, sizeof at, "blocks[%zu]", index);
-    dig_yaml_check_ranges(at, sizeof range / sizeof range[0], range, work->c);
-    block->function = block->function != 0 ? block->function : function;
-    block->poll_s   = block->poll_s > 0.0 ? 1.0 / block->poll_s : 0.0;
-    block->frame.delay_s *= 1e-3;
-}
-
 // Reads the blocks of a Modbus map, every register within one; plans them where there are none.
 static void read_blocks(const struct dig_config_map_work *const work,
-                        const struct dig_map_text *const        text)
+                        const struct map_text *const            text)
 {
     struct dig_signal_map *const map      = work->map;
     const unsigned               function = text->function == 3 ? 3 : 4;
@@ -134,12 +215,16 @@ static void read_blocks(const struct dig_config_map_work *const work,
         return;
     }
     for (size_t i = 0; i < map->groups; i++) {
-        take_block(work, i, function, &map->group[i]);
+        struct dig_map_group *const block = &map->group[i];
+        dig_require(work->c, block->first_register + block->registers <= 65536,
+                    "blocks[%zu].registers: %u, expected 1 … %u", i, block->registers,
+                    65536 - block->first_register);
+        block->function = block->function != 0 ? block->function : function;
     }
-    for (unsigned i = 0; work->c->status == DIG_OK && i < text->signals_count; i++) {
+    for (size_t i = 0; work->c->status == DIG_OK && i < text->signals_count; i++) {
         struct dig_map_entry *const entry = &map->entry[dig_signal_find(text->signals[i].name)];
         dig_require(work->c, dig_register_assign(map, entry),
-                    "signals[%u].register: %u, expected it within one of the blocks", i,
+                    "signals[%zu].register: %u, expected it within one of the blocks", i,
                     entry->reg);
     }
     dig_require(work->c, !map->has_alive || dig_register_assign(map, &map->alive),
@@ -192,22 +277,21 @@ static void find_needed(struct dig_signal_map *const map)
 }
 
 static void read_map(const struct dig_config_map_work *const work,
-                     const struct dig_map_text *const        text)
+                     const struct map_text *const            text)
 {
     struct dig_signal_map *const map = work->map;
     check_map(work, text);
-    map->stuck_s    = text->stuck_ms != NULL ? *text->stuck_ms * 1e-3 : 0.5;
-    map->coherent_s = map->coherent_s > 0.0      ? map->coherent_s * 1e-3
-                      : map->kind == DIG_MAP_CAN ? 6e-3
-                                                 : coherent_polls_s;
+    if (!(map->coherent_s > 0.0)) {
+        map->coherent_s = map->kind == DIG_MAP_CAN ? 6e-3 : coherent_polls_s;
+    }
 
-    for (unsigned i = 0; work->c->status == DIG_OK && i < text->signals_count; i++) {
+    for (size_t i = 0; work->c->status == DIG_OK && i < text->signals_count; i++) {
         read_signal(work, i, &text->signals[i]);
     }
-    if (work->c->status == DIG_OK && text->alive != NULL) {
-        read_alive(work, text->alive);
+    if (work->c->status == DIG_OK && map->has_alive) {
+        read_alive(work, &text->alive);
     }
-    for (unsigned i = 0; work->c->status == DIG_OK && i < text->messages_count; i++) {
+    for (size_t i = 0; work->c->status == DIG_OK && i < text->messages_count; i++) {
         dig_config_map_read_message(work, i, &text->messages[i]);
     }
     if (work->c->status == DIG_OK && map->kind == DIG_MAP_MODBUS) {
@@ -219,17 +303,16 @@ static void read_map(const struct dig_config_map_work *const work,
     }
 }
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
     const struct dig_config_map_work *const asked = into;
-    const struct dig_map_text *const        text  = loaded;
-    struct dig_signal_map                   map   = text->map;
-    const struct dig_config_map_work        work  = { asked->dbc, &map, c };
+    struct map_text *const                  text  = loaded;
+    const struct dig_config_map_work        work  = { asked->dbc, &text->map, c };
     (void)path;
     read_map(&work, text);
     if (c->status == DIG_OK) {
-        *asked->map = map;
+        *asked->map = text->map;
     }
 }
 
@@ -238,5 +321,5 @@ enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc
 {
     assert(map != NULL);
     struct dig_config_map_work asked = { .dbc = dbc, .map = map };
-    return dig_yaml_read(path, &dig_map_schema, take, &asked, error);
+    return dig_yaml_read(path, &schema, take, &asked, error);
 }

@@ -1,7 +1,6 @@
 // The CAN side of the signal map: entries found in a DBC, and what the map says of messages.
 
 #include "core/units.h"
-#include "files/yaml/yaml.h"
 #include "firmware_host/bus/signal_map.h"
 #include "firmware_host/config/config_map_parts.h"
 
@@ -77,9 +76,9 @@ void dig_config_map_find_can(const struct dig_config_map_work *const work, const
                              const char *const message_name, const char *const signal_name,
                              struct dig_map_entry *const entry)
 {
-    dig_require(work->c, message_name != NULL && signal_name != NULL,
+    dig_require(work->c, message_name[0] != '\0' && signal_name[0] != '\0',
                 "%s.%s: missing, expected a name of the DBC", at,
-                message_name == NULL ? "message" : "signal");
+                message_name[0] == '\0' ? "message" : "signal");
     const struct dig_dbc_message *const message =
         work->c->status == DIG_OK ? dig_dbc_find(work->dbc, message_name) : NULL;
     dig_require(work->c, message != NULL, "%s.message: \"%s\", expected a message of the DBC", at,
@@ -113,15 +112,15 @@ static void read_checksum(const struct dig_config_map_work *const work, const ch
                           const struct dig_message_text *const text,
                           struct dig_map_group *const          group)
 {
-    group->checksum = text->checksum->kind;
+    group->checksum = text->checksum;
     group->checksum_at =
-        find_frame_signal(work, at, "checksum", text->message, text->checksum->signal);
+        find_frame_signal(work, at, "checksum", text->message, text->checksum_signal);
 
-    const bool     tsc1 = text->checksum->kind == DIG_CHECKSUM_J1939_TSC1;
+    const bool     tsc1 = text->checksum == DIG_CHECKSUM_J1939_TSC1;
     const unsigned bits = group->checksum_at.bits;
     const unsigned from = group->checksum_at.start_bit % 8;
     dig_require(work->c,
-                tsc1 ? bits <= 4 && text->counter != NULL
+                tsc1 ? bits <= 4 && text->counter[0] != '\0'
                      : bits == 8 && from == (group->checksum_at.intel ? 0U : 7U),
                 "%s.checksum: expected %s", at,
                 tsc1 ? "up to 4 bits, and a counter beside it" : "a signal of one whole byte");
@@ -141,21 +140,16 @@ void dig_config_map_read_message(const struct dig_config_map_work *const work, c
     if (known < 0) {
         return;
     }
-    struct dig_map_group *const group   = &work->map->group[known];
-    const struct dig_yaml_range range[] = {
-        { "delay_ms", text->delay_ms, 0.0, 1000.0 },
-        { "cycle_ms", text->cycle_ms, 0.0, 60e3 },
-    };
-    group->frame.delay_s = text->delay_ms * 1e-3;
-    group->frame.cycle_s = text->cycle_ms > 0.0 ? text->cycle_ms * 1e-3 : group->frame.cycle_s;
-    dig_yaml_check_ranges(at, 2, range, work->c);
-    if (text->counter != NULL) {
+    struct dig_map_group *const group = &work->map->group[known];
+    group->frame.delay_s              = text->delay_s;
+    group->frame.cycle_s              = text->cycle_s > 0.0 ? text->cycle_s : group->frame.cycle_s;
+    if (text->counter[0] != '\0') {
         group->counter = find_frame_signal(work, at, "counter", text->message, text->counter);
         group->frame.counter_mod = group->counter.bits > 0 && group->counter.bits < 32
                                        ? 1U << group->counter.bits
                                        : UINT32_MAX;
     }
-    if (text->checksum != NULL) {
+    if (text->checksum != DIG_CHECKSUM_NONE) {
         read_checksum(work, at, text, group);
     }
 }

@@ -1,5 +1,5 @@
-// Reading the signal map: how it stands in the file (config_map_text.c has the schema), and what
-// config_map.c (map, signals, registers) and config_map_can.c (DBC signals, messages) share.
+// Reading the signal map: how signals and messages stand in the file, and what config_map.c
+// (schema, signals, registers) and config_map_can.c (DBC signals, messages) share.
 
 #ifndef DIG_FIRMWARE_HOST_CONFIG_CONFIG_MAP_PARTS_H
 #define DIG_FIRMWARE_HOST_CONFIG_CONFIG_MAP_PARTS_H
@@ -7,44 +7,23 @@
 #include "core/error.h"
 #include "firmware_host/bus/signal_map.h"
 
-#include <cyaml/cyaml.h>
+#define DIG_MAP_NAME_SIZE 64
 
-// What the map keeps as it stands is where the map has it, in the file's units, 0 where absent.
-// Pointers: NULL where a key is absent.
-
-/// A signal, or the alive counter, which has no name.
+/// A signal, or the alive counter, which has no name. What is absent is 0.
 struct dig_signal_text {
     struct dig_map_entry entry;
-    char                *name, *message, *signal;
-    unsigned            *reg;
-    int                  sign;
-    double               frozen_ms; // of the alive counter
-};
-
-struct dig_checksum_text {
-    char             *signal;
-    enum dig_checksum kind;
+    char   name[DIG_MAP_NAME_SIZE], message[DIG_MAP_NAME_SIZE], signal[DIG_MAP_NAME_SIZE];
+    bool   has_reg;
+    int    sign;
+    double frozen_s; // of the alive counter
 };
 
 struct dig_message_text {
-    char                     *message, *counter;
-    double                    delay_ms, cycle_ms;
-    struct dig_checksum_text *checksum;
+    char              message[DIG_MAP_NAME_SIZE], counter[DIG_MAP_NAME_SIZE];
+    double            delay_s, cycle_s;
+    char              checksum_signal[DIG_MAP_NAME_SIZE];
+    enum dig_checksum checksum;
 };
-
-struct dig_map_text {
-    struct dig_signal_map    map; // its groups are the blocks
-    unsigned                 function;
-    double                  *stuck_ms;
-    struct dig_signal_text  *alive;
-    struct dig_message_text *messages;
-    unsigned                 messages_count;
-    struct dig_signal_text  *signals;
-    unsigned                 signals_count;
-};
-
-/// Of a struct dig_map_text.
-extern const cyaml_schema_value_t dig_map_schema;
 
 /// What is being read, and what was found wrong with it: then the map is of no use.
 struct dig_config_map_work {

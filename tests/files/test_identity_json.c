@@ -183,7 +183,7 @@ TEST(defects_are_refused_by_name)
         { "\"depth\": 1.25", "\"depth\": 3.5", "depth" },
         { "\"depth\": 1.25,", "", "depth" },
         { "\"matched_depth\": 1.2", "\"matched_depth\": 0.1", "matched_depth" },
-        { "\"matched_attack_deg\": 0.", "\"matched_attack_deg\": 50.", "matched_depth" },
+        { "\"matched_attack_deg\": 0.", "\"matched_attack_deg\": 50.", "matched_attack_deg" },
     };
     for (size_t i = 0; i < sizeof defect / sizeof defect[0]; i++) {
         static char       bad[65536];

@@ -55,7 +55,7 @@ TEST(what_cannot_be_is_refused_by_key)
         { "job: digtable-0123456789ab", "job: \"a b\"", ":1: job: \"a b\"" },
         { "job: digtable-0123456789ab", "job: --all", ":1: job: \"--all\"" },
         { "digs_sha256: 0123456789abcdef", "digs_sha256: 0123456789abcdeff", ":2: digs_sha256" },
-        { "tasks: 5", "tasks: 0", ":5: tasks: 0, expected 1 to 10000" },
+        { "tasks: 5", "tasks: 0", ":5: tasks: 0, expected 1 … 10000" },
         { "tasks: 5", "tasks: 10001", ":5: tasks: 10001" },
         { "beds: 12", "beds: 4", ":6: beds: 4, expected 5" },
         { "beds: 12", "beds: 10000001", ":6: beds" },

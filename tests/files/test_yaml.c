@@ -6,6 +6,7 @@
 
 #include <locale.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 struct part {
     double weight_kg;
@@ -21,31 +22,39 @@ struct thing {
     double      pair[2];
     struct part inner;
     struct part parts[3];
-    uint32_t    parts_count;
+    size_t      parts_count;
+    double      turn_rad, step_s;
+    bool        has_rate;
+    int64_t     level;
 };
 
-static const cyaml_schema_value_t number        = { CYAML_VALUE_FLOAT(CYAML_FLAG_DEFAULT, double) };
-static const cyaml_schema_field_t part_fields[] = {
-    CYAML_FIELD_FLOAT("weight_kg", CYAML_FLAG_DEFAULT, struct part, weight_kg),
-    CYAML_FIELD_STRING("name", CYAML_FLAG_OPTIONAL, struct part, name, 1),
-    CYAML_FIELD_END,
+static const struct dig_yaml_field part_fields[] = {
+    NUMBER(part, weight_kg),
+    FIELD(TEXT, "name", part, name, OPTIONAL, .least = 1),
+    END,
 };
-static const cyaml_schema_value_t part    = { CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct part,
-                                                                  part_fields) };
-static const cyaml_strval_t       kinds[] = { { "round", 1 }, { "square", 2 } };
-static const cyaml_schema_field_t thing_fields[] = {
-    CYAML_FIELD_STRING("name", CYAML_FLAG_DEFAULT, struct thing, name, 1),
-    CYAML_FIELD_ENUM("kind", CYAML_FLAG_OPTIONAL, struct thing, kind, kinds, 2),
-    CYAML_FIELD_INT("small", CYAML_FLAG_OPTIONAL, struct thing, small),
-    CYAML_FIELD_UINT("id", CYAML_FLAG_OPTIONAL, struct thing, id),
-    CYAML_FIELD_BOOL("on", CYAML_FLAG_OPTIONAL, struct thing, on),
-    CYAML_FIELD_SEQUENCE_FIXED("pair", CYAML_FLAG_DEFAULT, struct thing, pair, &number, 2),
-    CYAML_FIELD_MAPPING("inner", CYAML_FLAG_DEFAULT, struct thing, inner, part_fields),
-    CYAML_FIELD_SEQUENCE("parts", CYAML_FLAG_OPTIONAL, struct thing, parts, &part, 0, 3),
-    CYAML_FIELD_END,
+static const struct dig_yaml_field part    = ENTRY(part, part_fields);
+static const struct dig_yaml_word  kinds[] = { { "round", 1 }, { "square", 2 }, { .word = NULL } };
+static const struct dig_yaml_field thing_fields[] = {
+    TEXT(thing, name),
+    FIELD(WORD, "kind", thing, kind, OPTIONAL, .word = kinds),
+    FIELD(WHOLE, "small", thing, small, OPTIONAL),
+    FIELD(COUNT, "id", thing, id, OPTIONAL),
+    FIELD(BOOL, "on", thing, on, OPTIONAL),
+    NUMBERS("pair", REQUIRED, thing, pair),
+    PART("inner", REQUIRED, thing, inner, part_fields),
+    LIST("parts", OPTIONAL, thing, parts, parts_count, &part, 0),
+    FIELD(NUMBER, "turn_deg", thing, turn_rad, OPTIONAL, .low = -180.0, .high = 180.0,
+          .factor = 0.0174532925),
+    FIELD(NUMBER, "rate_Hz", thing, step_s, OPTIONAL, .low = 1.0, .high = 100.0, .factor = -1.0,
+          GIVEN(thing, has_rate)),
+    FIELD(WHOLE, "level", thing, level, OPTIONAL, .low = -3.0, .high = 3.0),
+    END,
 };
-static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, struct thing,
-                                                                 thing_fields) };
+static const struct thing         defaults = { .step_s = 7.0, .level = 2 };
+static const struct dig_yaml_file schema   = { .of       = thing_fields,
+                                               .size     = sizeof(struct thing),
+                                               .defaults = &defaults };
 
 #define GOOD                                                                                       \
     "# a comment\n"                                                                                \
@@ -61,7 +70,7 @@ static const cyaml_schema_value_t schema = { CYAML_VALUE_MAPPING(CYAML_FLAG_POIN
     "  - {weight_kg: 2, name: head}\n"                                                             \
     "  - weight_kg: 3\n"
 
-static void take(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void take(const char *const path, void *const loaded, void *const into,
                  struct dig_conditions *const c)
 {
     (void)path;
@@ -77,7 +86,7 @@ static enum dig_status read_thing(const char *const path, struct thing *const th
     return dig_yaml_read(path, &schema, take, thing, error);
 }
 
-static void refuse(const char *const path, cyaml_data_t *const loaded, void *const into,
+static void refuse(const char *const path, void *const loaded, void *const into,
                    struct dig_conditions *const c)
 {
     (void)path;
@@ -113,6 +122,24 @@ TEST(what_fits_the_schema_is_loaded)
     assert_close(t->parts[1].weight_kg, 3.0, 0.0);
 }
 
+TEST(numbers_are_kept_in_the_units_of_the_struct_and_what_is_absent_keeps_its_default)
+{
+    struct dig_error error = { "" };
+    struct thing     thing;
+    assert_int_equal(read_thing(scratch_write("good.yaml", GOOD), &thing, &error), DIG_OK);
+    assert_close(thing.step_s, 7.0, 0.0);
+    assert_int_equal(thing.level, 2);
+    assert_false(thing.has_rate);
+    assert_int_equal(
+        read_thing(scratch_write("units.yaml", GOOD "turn_deg: -90\nrate_Hz: 50\nlevel: -3\n"),
+                   &thing, &error),
+        DIG_OK);
+    assert_close(thing.turn_rad, -1.570796325, 1e-12);
+    assert_close(thing.step_s, 0.02, 1e-15);
+    assert_int_equal(thing.level, -3);
+    assert_true(thing.has_rate);
+}
+
 TEST(a_comma_as_the_users_decimal_point_changes_nothing)
 {
     struct thing thing;
@@ -141,7 +168,8 @@ TEST(every_defect_is_told_by_line_key_and_expectation)
         { "name: a\npair: [1, 2]\ninner:\n  name: b\n",
           ":4: ", "inner.weight_kg: missing, expected a number" },
         { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\ncolour: red\n", ":4: ",
-          "colour: unknown key, expected one of name, kind, small, id, on, pair, inner, parts" },
+          "colour: unknown key, expected one of name, kind, small, id, on, pair, inner, parts, "
+          "turn_deg" },
         { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\nname: b\n",
           ":4: ", "name: again (first on line 1), expected once" },
         { "name: a\npair: [1, 2]\ninner: {weight_kg: heavy}\n",
@@ -185,6 +213,10 @@ TEST(every_defect_is_told_by_line_key_and_expectation)
         { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\n---\nname: b\n",
           ":5: ", "a second document, expected one" },
         { "name: a\npair: [1, 2]\ninner: *nowhere\n", ":3: ", "expected YAML" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\nrate_Hz: 0.5\n",
+          ":4: ", "rate_Hz: 0.5, expected 1 … 100" },
+        { "name: a\npair: [1, 2]\ninner: {weight_kg: 1}\nlevel: 4\n",
+          ":4: ", "level: 4, expected -3 … 3" },
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct dig_error  error = { "" };

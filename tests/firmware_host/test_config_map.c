@@ -92,7 +92,7 @@ TEST(defects_are_refused_with_file_line_and_key)
         { "kind: modbus\nsignals:\n  - {name: boom_rad, register: 1, min: 1, max: 1}\n",
           "bad.yaml:3: signals[0].max: 1, expected more than min" },
         { "kind: modbus\nsignals:\n  - {name: boom_rad, register: 1, sign: 2, min: 0, max: 1}\n",
-          "bad.yaml:3: signals[0].sign: 2, expected 1 or -1" },
+          "bad.yaml:3: signals[0].sign: \"2\", expected one of 1, -1" },
         { "kind: modbus\nsignals:\n  - {name: boom_rad, register: 65536, min: 0, max: 1}\n",
           "bad.yaml:3: signals[0].register: 65536, expected 0" },
         { "kind: modbus\nblocks: [{register: 0, registers: 13}]\nsignals:\n"
@@ -118,7 +118,7 @@ TEST(defects_are_refused_with_file_line_and_key)
           "blocks[0].poll_Hz: -1, expected 0.01 … 1000" },
         { "kind: modbus\nfunction: 6\nsignals:\n  - {name: boom_rad, register: 1, min: 0, max: "
           "1}\n",
-          "bad.yaml:2: function: 6, expected 4" },
+          "bad.yaml:2: function: 6, expected 3 … 4" },
         { "kind: modbus\nalive: {register: 0, frozen_ms: -1}\nsignals:\n"
           "  - {name: boom_rad, register: 1, min: 0, max: 1}\n",
           "bad.yaml:2: alive.frozen_ms: -1" },
