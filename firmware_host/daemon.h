@@ -30,9 +30,8 @@ void dig_daemon_describe(const struct dig_daemon *daemon, void (*say)(const char
 void dig_daemon_describe_json(const struct dig_daemon *daemon, FILE *file);
 
 /// Runs until SIGTERM or SIGINT (SIGHUP exchanges the table), or until a replay has ended and all
-/// of it is published. DIG_EIO: a thread could not be started.
-DIG_MUST_CHECK enum dig_status dig_daemon_run(struct dig_daemon        *daemon,
-                                              const struct dig_console *console,
-                                              struct dig_error         *error);
+/// of it is published. say: a line of the log. DIG_EIO: a thread could not be started.
+DIG_MUST_CHECK enum dig_status
+dig_daemon_run(struct dig_daemon *daemon, void (*say)(const char *line), struct dig_error *error);
 
 #endif // DIG_FIRMWARE_HOST_DAEMON_H

@@ -79,10 +79,10 @@ static void wait_for_end(struct dig_daemon *const d, const sigset_t *const signa
     }
 }
 
-enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_console *const console,
-                               struct dig_error *const error)
+enum dig_status dig_daemon_run(struct dig_daemon *const d, void (*const say)(const char *line),
+                               struct dig_error *const  error)
 {
-    assert(d != NULL && console != NULL && console->say != NULL);
+    assert(d != NULL && say != NULL);
 
     // Blocked before the first thread starts, so that every thread inherits it and only we see
     // them.
@@ -100,7 +100,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_cons
     (void)pthread_attr_init(&attributes);
     (void)pthread_attr_setstacksize(&attributes, STACK_BYTES);
     (void)sem_init(&d->granted, 0, 0);
-    d->publisher.console = *console;
+    d->publisher.say = say;
 
     enum dig_status status = DIG_OK;
     for (size_t i = 0; i < sizeof mains / sizeof mains[0] && status == DIG_OK; i++) {
@@ -116,7 +116,7 @@ enum dig_status dig_daemon_run(struct dig_daemon *const d, const struct dig_cons
             while (sem_wait(&d->granted) != 0) {
             }
             dig_rt_describe(&d->loaded.config.realtime, &d->publisher.health.rt, sizeof line, line);
-            console->say(line);
+            say(line);
         }
     }
     (void)pthread_attr_destroy(&attributes);

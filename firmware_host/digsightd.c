@@ -8,13 +8,12 @@
 #include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <unistd.h>
 
 enum { EXIT_DONE, EXIT_FAILED, EXIT_USAGE };
 
 struct options {
     const char *config;
-    bool        check, json, quiet;
+    bool        check, json;
 };
 
 #define INTO(field) DIG_INTO(struct options, field)
@@ -25,7 +24,6 @@ static const struct dig_option known[] = {
     { "check", NULL, NULL, "load everything the configuration names, say what was found, exit",
       INTO(check) },
     { "json", NULL, NULL, "say that as JSON; with --check", INTO(json) },
-    { "quiet", NULL, NULL, "no status line on a terminal", INTO(quiet), .letter = 'q' },
 };
 
 static const struct dig_program program = {
@@ -49,33 +47,14 @@ static const struct dig_program program = {
 };
 
 // Lines name files and what stands in them: nothing of that may command a terminal.
-static void put(FILE *const to, const char *const before, const char *const line,
-                const char *const behind)
-{
-    (void)fputs(before, to);
-    dig_text_put(to, line);
-    (void)fputs(behind, to);
-}
-
 static void say(const char *const line)
 {
-    put(stderr, "digsightd: ", line, "\n");
-}
-
-// On a terminal the last line shows where things stand; a line that is said goes above it.
-static void say_above(const char *const line)
-{
-    put(stderr, "\r\033[Kdigsightd: ", line, "\n");
-}
-
-static void show(const char *const line)
-{
-    put(stderr, "\r\033[K", line, "");
+    dig_text_print(stderr, "digsightd: %s\n", line);
 }
 
 static void print(const char *const line)
 {
-    put(stdout, "", line, "\n");
+    dig_text_print(stdout, "%s\n", line);
 }
 
 static int fail(const enum dig_status status, const struct dig_error *const error)
@@ -112,11 +91,7 @@ int main(const int argc, char *argv[])
         dig_daemon_describe(daemon, o.check ? print : say);
     }
     if (!o.check) {
-        const bool               terminal = !o.quiet && isatty(STDERR_FILENO) != 0;
-        const struct dig_console console  = { .say  = terminal ? say_above : say,
-                                              .show = terminal ? show : NULL };
-        status                            = dig_daemon_run(daemon, &console, &error);
-        (void)fputs(terminal ? "\n" : "", stderr);
+        status = dig_daemon_run(daemon, say, &error);
     }
     dig_daemon_destroy(daemon);
     if (status != DIG_OK) {

@@ -57,9 +57,6 @@ static void publish_records(struct dig_publisher *const p)
     struct dig_record            record;
     int                          burst = 0;
     while (dig_ring_pop(&p->handoffs->records, &record)) {
-        if (record.has_estimate) {
-            p->estimate = record.estimate;
-        }
         for (size_t i = 0; i < DIG_SIGNALS; i++) {
             p->seen[i] |= record.sample.valid[i];
             p->any_seen |= record.sample.valid[i];
@@ -224,7 +221,7 @@ static void wait_for_tick(const struct dig_publisher *const p)
 
 void dig_publisher_run(struct dig_publisher *const p)
 {
-    assert(p != NULL && p->console.say != NULL);
+    assert(p != NULL && p->say != NULL);
     bool stopping = false;
     while (!stopping) {
         // Read first: the last round then finds everything put before *stop.
@@ -237,7 +234,6 @@ void dig_publisher_run(struct dig_publisher *const p)
         publish_matches(p, now_ns);
         publish_health(p, now_ns, stopping);
         feed_watchdog(p, now_ns);
-        dig_publisher_show(p, now_ns);
         if (!stopping) {
             wait_for_tick(p);
         }

@@ -12,21 +12,15 @@
 #define DIG_STATE_RUNNING  "running"
 #define DIG_STATE_STOPPING "stopping"
 
-/// The daemon's text output. say: a log line, as often as log_limit.h allows. show: the state,
-/// twice a second, each line in place of the one before; NULL: no terminal.
-struct dig_console {
-    void (*say)(const char *line);
-    void (*show)(const char *line);
-};
-
 struct dig_publisher {
     const struct dig_config    *config;
     const struct dig_curve_set *set;
     struct dig_handoffs        *handoffs;
     const atomic_bool          *stop;
     atomic_llong               *generation; // out: of the table in use here
-    struct dig_console          console;    // used on this thread
-    struct dig_health           health;     // rt, tick_s, input and fit fixed at start
+    void (*say)(
+        const char *line);    // a line of the log, on this thread, as often as log_limit.h allows
+    struct dig_health health; // rt, tick_s, input and fit fixed at start
 
     // the thread's own
     struct dig_output    *output;
@@ -37,12 +31,10 @@ struct dig_publisher {
     int64_t lcm_pause_ns;
     struct dig_table_update update; // a table, from when the tick uses it
     int64_t                 logged_drops;
-    int64_t                 next_show_ns;
     struct dig_log_limit    log_limit; // of lines that repeat as a bus comes and goes
     uint64_t                record_count;
     bool                    seen[DIG_SIGNALS]; // signals that had a value since the last HEALTH
     bool                    any_seen;
-    struct dig_estimate     estimate; // the last one
 };
 
 /// The thread: returns after *stop, when all that was left is published.

@@ -15,7 +15,7 @@ __attribute__((format(printf, 2, 0))) static void put_line(const struct dig_publ
 {
     char line[512];
     (void)vsnprintf(line, sizeof line, format, args);
-    p->console.say(line);
+    p->say(line);
 }
 
 __attribute__((format(printf, 2, 3))) void dig_publisher_log(const struct dig_publisher *const p,
@@ -149,33 +149,4 @@ void dig_publisher_log_drops(struct dig_publisher *const p, const int64_t now_ns
         }
         dig_publisher_log(p, "dropped so far: %s", text);
     }
-}
-
-void dig_publisher_show(struct dig_publisher *const p, const int64_t now_ns)
-{
-    static const char *const phases[]  = { "air", "contact", "dig", "exit" };
-    static const char *const motions[] = { "", ", penetration", ", drag", ", curl", ", lift" };
-    if (p->console.show == NULL || now_ns < p->next_show_ns) {
-        return;
-    }
-    p->next_show_ns                     = now_ns + DIG_NS_PER_S / 2;
-    const struct dig_estimate *const e  = &p->estimate;
-    const bool                       on = e->trajectory >= 0 && p->record_count > 0;
-    char                             gravel[96];
-    char                             line[256];
-    (void)snprintf(gravel, sizeof gravel, "gravel not known");
-    if (p->any_result) {
-        const struct dig_match *const  m = &p->result.track.match;
-        const struct dig_gravel *const g = &m->gravel;
-        (void)snprintf(gravel, sizeof gravel, "gravel %s%.2f / %.2f / %.0f kg/m3 by %s%s",
-                       dig_match_is_family(m) ? "like " : "", g->value[DIG_AXIS_FRICTION],
-                       g->value[DIG_AXIS_ROLLING], g->value[DIG_AXIS_DENSITY_kgpm3],
-                       m->forces ? "moment and forces" : "moment",
-                       p->result.track.valid ? "" : " (no longer)");
-    }
-    (void)snprintf(line, sizeof line, "%s | %s%s%s%s | moment %+.2f kNm | %s | %" PRId64 " frames",
-                   p->health.state, phases[e->phase], motions[e->motion], on ? " " : "",
-                   on ? p->set->trajectory[e->trajectory].name : "", 1e-3 * e->wrench.My_Nm, gravel,
-                   (int64_t)atomic_load(&p->health.input->frames));
-    p->console.show(line);
 }

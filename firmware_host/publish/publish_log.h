@@ -1,4 +1,4 @@
-// The publisher's text output: the log and the status line.
+// The publisher's text output: the log.
 
 #ifndef DIG_FIRMWARE_HOST_PUBLISH_PUBLISH_LOG_H
 #define DIG_FIRMWARE_HOST_PUBLISH_PUBLISH_LOG_H
@@ -22,8 +22,5 @@ void dig_publisher_log_match(const struct dig_publisher *publisher);
 /// Logs the counters of dropped values when they changed, at most every ten seconds: HEALTH has
 /// them for programs.
 void dig_publisher_log_drops(struct dig_publisher *publisher, int64_t now_ns);
-
-/// Shows the status line on a terminal, twice a second.
-void dig_publisher_show(struct dig_publisher *publisher, int64_t now_ns);
 
 #endif // DIG_FIRMWARE_HOST_PUBLISH_PUBLISH_LOG_H
