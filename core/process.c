@@ -6,14 +6,10 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
-
-#define END_TRIES 1000 // ten seconds
 
 extern char **environ; // NOLINT(readability-redundant-declaration): POSIX leaves it undeclared
 
@@ -47,13 +43,11 @@ static char **environment(const char *const without)
     return kept;
 }
 
-// In a group of its own, so that it can be ended together with what it started.
 static int start(const struct dig_process *const p, FILE *const err, char **const env,
                  pid_t *const child)
 {
     char                      *words[DIG_PROCESS_ARGUMENTS_MAX + 1];
     posix_spawn_file_actions_t files;
-    posix_spawnattr_t          how;
     size_t                     n = 0;
     while (p->argv[n] != NULL) {
         n++;
@@ -70,39 +64,9 @@ static int start(const struct dig_process *const p, FILE *const err, char **cons
     }
     (void)posix_spawn_file_actions_adddup2(&files, fileno(p->out), STDOUT_FILENO);
     (void)posix_spawn_file_actions_adddup2(&files, fileno(err), STDERR_FILENO);
-    (void)posix_spawnattr_init(&how);
-    (void)posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP);
-    const int failed = posix_spawnp(child, words[0], &files, &how, words, env);
-    (void)posix_spawnattr_destroy(&how);
+    const int failed = posix_spawnp(child, words[0], &files, NULL, words, env);
     (void)posix_spawn_file_actions_destroy(&files);
     return failed;
-}
-
-// Looks now and then where it may be stopped: a signal may come just before a wait without end.
-static int wait_for(const pid_t child, const struct dig_process *const p)
-{
-    const volatile sig_atomic_t *const stop = p->stop;
-
-    const struct timespec pause  = { .tv_nsec = 10000000 };
-    bool                  told   = false;
-    int                   how    = -1;
-    pid_t                 waited = 0;
-    const int             wait   = stop != NULL || p->watch != NULL ? WNOHANG : 0;
-    while ((waited = waitpid(child, &how, wait)) == 0 || (waited < 0 && errno == EINTR)) {
-        if (!told && stop != NULL && *stop != 0) {
-            (void)kill(-child, SIGTERM);
-            told = true;
-        }
-        if (p->watch != NULL) {
-            p->watch(p->context);
-        }
-        (void)nanosleep(&pause, NULL);
-    }
-    // What it started may need a moment more.
-    for (int i = 0; told && i < END_TRIES && kill(-child, 0) == 0; i++) {
-        (void)nanosleep(&pause, NULL);
-    }
-    return how;
 }
 
 enum dig_status dig_process_run(const struct dig_process *const process,
@@ -125,8 +89,10 @@ enum dig_status dig_process_run(const struct dig_process *const process,
             dig_error_set(error, DIG_EINVAL, "%s: %s, expected on PATH", name, strerror(failed));
         goto done;
     }
-    const int how = wait_for(child, process);
-    status        = DIG_OK;
+    int how = -1;
+    while (waitpid(child, &how, 0) < 0 && errno == EINTR) {
+    }
+    status = DIG_OK;
     if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
         dig_process_last_line(err, sizeof words, words);
         status = dig_error_set(error, DIG_EIO, "%s: %s", name, words[0] != '\0' ? words : "failed");

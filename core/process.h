@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 
-#include <signal.h>
 #include <stdio.h>
 
 #define DIG_PROCESS_ARGUMENTS_MAX 63
@@ -15,11 +14,6 @@ struct dig_process {
     const char        *without; // what begins so is not in its environment; NULL: all is
     FILE              *in;      // NULL: nothing to read
     FILE              *out;     // standard output
-    // Set by a signal: the program and all it started are asked to end. NULL: it is not.
-    const volatile sig_atomic_t *stop;
-    // Called every few milliseconds while it runs. NULL: nothing is.
-    void (*watch)(void *context);
-    void *context;
 };
 
 /// Runs a program and waits for its end. DIG_EINVAL: there is none of that name; DIG_EIO: it did

@@ -4,9 +4,6 @@
 
 #include "tests/testlib.h"
 
-#include <errno.h>
-#include <unistd.h>
-
 static FILE *out;
 
 static int fresh(void **state)
@@ -80,66 +77,6 @@ TEST_WITH(it_reads_what_it_is_given, fresh, done)
     dig_process_last_line(out, sizeof line, line);
     assert_string_equal(line, "7");
     (void)fclose(in);
-}
-
-// The program waits for a line that the second look at it writes.
-struct looked {
-    int fd, looks;
-};
-
-static void look(void *const context)
-{
-    struct looked *const l = context;
-    l->looks++;
-    assert_true(l->looks != 2 || write(l->fd, "\n", 1) == 1);
-}
-
-TEST_WITH(it_is_watched_while_it_runs, fresh, done)
-{
-    int  end[2];
-    char line[80];
-    assert_int_equal(pipe(end), 0);
-    FILE *const       in     = fdopen(end[0], "r");
-    struct looked     looked = { .fd = end[1] };
-    const char *const argv[] = { "timeout", "20", "sh", "-c", "read line && echo read", NULL };
-    const struct dig_process process = {
-        .argv = argv, .in = in, .out = out, .watch = look, .context = &looked
-    };
-    assert_int_equal(dig_process_run(&process, NULL), DIG_OK);
-    dig_process_last_line(out, sizeof line, line);
-    assert_string_equal(line, "read");
-    assert_true(looked.looks >= 2);
-    (void)fclose(in);
-    (void)close(end[1]);
-}
-
-static volatile sig_atomic_t stop;
-
-static void request_stop(const int signal)
-{
-    (void)signal;
-    stop = 1;
-}
-
-// The shell's own child would sleep on for an hour; once it is there, the shell asks to be stopped.
-TEST_WITH(stopped_it_ends_with_all_it_started, fresh, done)
-{
-    const struct sigaction action = { .sa_handler = request_stop };
-    const char *const argv[] = { "sh", "-c", "sleep 3600 & echo $!; kill -USR1 $PPID; wait", NULL };
-    const struct dig_process process = { .argv = argv, .out = out, .stop = &stop };
-    char                     line[80];
-    char                     path[64];
-    assert_int_equal(sigaction(SIGUSR1, &action, NULL), 0);
-    assert_int_equal(dig_process_run(&process, NULL), DIG_EIO);
-    dig_process_last_line(out, sizeof line, line);
-    const long child = strtol(line, NULL, 10);
-    assert_true(child > 0);
-    (void)snprintf(path, sizeof path, "/proc/%ld/cmdline", child);
-    FILE *const file = fopen(path, "r");
-    assert_true(file == NULL || fgetc(file) == EOF); // gone, or dead and not yet waited for
-    if (file != NULL) {
-        (void)fclose(file);
-    }
 }
 
 TEST_WITH(the_last_line_is_cut_and_clean, fresh, done)

@@ -18,7 +18,7 @@ table="$folder/table.sqlite"
 jobs=$table.jobs
 mkdir "$folder"
 
-submit() { digtable submit $scene $grid -o "$table" --slurm --tasks 3 "$@"; }
+submit() { digtable submit $scene $grid -o "$table" --tasks 3 "$@"; }
 state() { # KEY: of status --json
     "$BIN/digtable" status "$table" --json 2>"$work/err" | sed -n "s/^ \"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\$/\1/p"
 }
@@ -52,7 +52,7 @@ check "what sbatch refuses is said in its words, with 2" eval 'is $code 2 && gre
 check "nothing of it counts as begun" eval 'is "$(state waiting)" 3 && is "$(state failed)" 0'
 
 mkdir "$work/%a"
-digtable submit $scene $grid -o "$work/%a/table.sqlite" --slurm
+digtable submit $scene $grid -o "$work/%a/table.sqlite"
 check "a name that Slurm would replace a part of is refused" eval 'is $code 2 && grep -q "without % and" $work/err && is $(tasks_queued) 0'
 
 # Two at the same time, before anything runs: the nodes take nothing yet.
@@ -66,16 +66,16 @@ $(command -v sbatch) "\$@"
 case "\$*" in *--array=*) kill -KILL \$PPID ;; esac
 EOF
 chmod +x "$work/cut/sbatch"
-PATH=$work/cut:$PATH digtable submit $scene $grid -o "$work/cut.sqlite" --slurm --tasks 3
+PATH=$work/cut:$PATH digtable submit $scene $grid -o "$work/cut.sqlite" --tasks 3
 check "a submit is killed behind sbatch" eval 'is $code 137 && is $(tasks_queued) 3 && is $(merges_queued) 0'
-digtable submit $scene $grid -o "$work/cut.sqlite" --slurm
+digtable submit $scene $grid -o "$work/cut.sqlite"
 check "the next one finds its tasks, and submits the merge alone" \
     eval 'is $code 0 && grep -q "3 pending; the merge submitted" $work/err && is $(tasks_queued) 3 && is $(merges_queued) 1'
 scancel --user="$(id -u)"
 check "both are taken out of the queue" wait_until 60 queue_is_empty
 
 for i in 1 2; do
-    "$BIN/digtable" submit $scene $grid -o "$table" --slurm --tasks 3 --time 30 2>"$work/submit$i.err" </dev/null &
+    "$BIN/digtable" submit $scene $grid -o "$table" --tasks 3 --time 30 2>"$work/submit$i.err" </dev/null &
     eval "submit$i=$!"
 done
 wait "$submit1"; code1=$?

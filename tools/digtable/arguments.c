@@ -122,12 +122,10 @@ static const struct dig_command commands[] = {
       "digtable generate config/scenes/product.yaml config/grids/product.yaml \\\n"
       "         -o part3.sqlite --shard 3/16\n" },
     { "submit", "SCENE.yaml GRID.yaml -o TABLE.sqlite [OPTION]...",
-      "Computes a table in shards: here, or with --slurm as a job array.",
+      "Has Slurm compute a table in shards, as a job array.",
       "Plans once, in the folder TABLE.sqlite.jobs, and merges the shards when all are done. The "
       "same command again submits what failed, and only that.",
-      "digtable submit scene.yaml grid.yaml -o my.sqlite --slurm --tasks 500 \\\n"
-      "         --time 4:00:00\n"
-      "digtable submit scene.yaml grid.yaml -o my.sqlite\n" },
+      "digtable submit scene.yaml grid.yaml -o my.sqlite --tasks 500 --time 4:00:00\n" },
     { "status", "TABLE.sqlite [OPTION]...\nFOLDER [OPTION]...",
       "Shows how far a table of `digtable submit` is.", NULL,
       "digtable status my.sqlite\n"
@@ -196,8 +194,8 @@ static const struct dig_option options[] = {
       INTO(output), .letter = 'o' },
     { "output", "FILE.csv", " export ", "the file to write (default: standard output)",
       INTO(output), .letter = 'o', .writes = true },
-    { "jobs", "N", " generate submit ", "digs at a time here (default: one a core)", INTO(workers),
-      1, 4096, .letter = 'j' },
+    { "jobs", "N", " generate ", "digs at a time (default: one a core)", INTO(workers), 1, 4096,
+      .letter = 'j' },
     { "threads", "N", " dig ",
       "of engines single and cuda in a bed of more than 30000 grains (default: one a core)",
       INTO(threads), 1, 256 },
@@ -210,7 +208,6 @@ static const struct dig_option options[] = {
       INTO(time_limit_s), 0.0, 1e9, "s" },
     { "shard", "I/N", " generate ",
       "the I-th of N parts alone; `digtable merge` puts the parts together", .take = take_shard },
-    { "slurm", NULL, " submit ", "submit to Slurm, do not compute here", INTO(slurm) },
     { "tasks", "N", " submit ", "shards, each one task (default: one a bed, at most 1000)",
       INTO(tasks), 1, DIG_JOB_TASKS_MAX },
     { "time", "T", " submit ", "time limit of a task, as sbatch takes it", INTO(time) },

@@ -38,7 +38,7 @@ struct dig_arguments {
     enum dig_channel          channel;
     struct dig_engine (*engine)(void);
     bool has_threads; // the engine
-    bool csv, json, runs, effects, complete, quiet, slurm;
+    bool csv, json, runs, effects, complete, quiet;
     // Set by a signal: what is finished is kept.
     const volatile sig_atomic_t *stop;
 };
