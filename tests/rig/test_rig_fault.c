@@ -19,7 +19,6 @@ static struct dig_rig_fault parse(const char *const text)
 TEST(every_kind_is_read_with_its_time)
 {
     assert_int_equal(parse("not-available@1").kind, DIG_RIG_FAULT_NOT_AVAILABLE);
-    assert_int_equal(parse("nan@1").kind, DIG_RIG_FAULT_NOT_AVAILABLE);
     assert_int_equal(parse("frozen@1").kind, DIG_RIG_FAULT_FROZEN);
     assert_int_equal(parse("missing@1").kind, DIG_RIG_FAULT_MISSING);
     assert_int_equal(parse("out-of-range@1").kind, DIG_RIG_FAULT_OUT_OF_RANGE);
@@ -72,7 +71,7 @@ TEST(fault_is_on_from_its_begin_to_just_before_its_end)
 TEST(samples_are_spoiled_only_while_the_fault_lasts)
 {
     struct dig_rig_faults faults = { .faults = 0 };
-    add(&faults, "nan@1:1");
+    add(&faults, "not-available@1:1");
     add(&faults, "out-of-range@3:1");
     struct dig_sample good = { .value = { 0.5, -1.0, -0.5, 5e6 } };
     for (int s = 0; s < DIG_SIGNALS; s++) {

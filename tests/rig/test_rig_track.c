@@ -148,27 +148,6 @@ TEST(cylinders_and_soil_do_the_work_that_lifts_and_moves_the_links)
     dig_recording_finish(&recording);
 }
 
-TEST(inertia_is_a_small_part_of_a_slow_dig)
-{
-    const struct dig_machine     machine   = read_machine("zx200_trench");
-    struct dig_rig_track_options options   = dig_rig_track_options_default();
-    struct dig_recording         recording = read_recording(ACTUAL);
-    struct dig_rig_track         moving    = build(&machine, &options, 1, &recording);
-    options.quasi_static                   = true;
-    struct dig_rig_track still             = build(&machine, &options, 1, &recording);
-    assert_int_equal(moving.rows, still.rows);
-    double most_Pa = 0.0;
-    for (size_t i = 0; i < moving.rows; i++) {
-        most_Pa = fmax(most_Pa, fabs(moving.row[i].pressures.head_Pa[DIG_JOINT_BUCKET] -
-                                     still.row[i].pressures.head_Pa[DIG_JOINT_BUCKET]));
-    }
-    assert_true(most_Pa > 1e3);   // it is there
-    assert_true(most_Pa < 0.5e6); // and small beside megapascals
-    dig_rig_track_finish(&moving);
-    dig_rig_track_finish(&still);
-    dig_recording_finish(&recording);
-}
-
 static void refuse(const struct dig_machine *const machine, const char *const path,
                    const struct dig_rig_track_options *const options,
                    const enum dig_status expected, const char *const word, const char *const other)
@@ -217,15 +196,9 @@ TEST(standard_bucket_is_refused_as_more_than_the_machine_has)
 
 TEST(dig_out_of_reach_is_refused)
 {
-    struct dig_machine           machine = read_machine("zx200_trench");
-    struct dig_rig_track_options options = dig_rig_track_options_default();
-    options.placed                       = true;
-    options.pin_X_m                      = 9.0;
-    options.pin_Z_m                      = -1.0;
-    refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "out of reach", "9.");
-
+    struct dig_machine                 machine = read_machine("zx200_trench");
+    const struct dig_rig_track_options options = dig_rig_track_options_default();
     // Within reach of the links, but not of the arm's own range.
-    options                             = dig_rig_track_options_default();
     machine.link[DIG_JOINT_ARM].max_rad = machine.link[DIG_JOINT_ARM].min_rad + 0.01;
     refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "arm joint:", "limit");
 
@@ -233,21 +206,6 @@ TEST(dig_out_of_reach_is_refused)
     machine.cylinder[DIG_JOINT_ARM].max_length_m =
         machine.cylinder[DIG_JOINT_ARM].min_length_m + 0.01;
     refuse(&machine, SIMPLE, &options, DIG_EUNREACHABLE, "arm cylinder:", "limit");
-}
-
-TEST(options_out_of_their_domain_are_refused)
-{
-    const struct dig_machine     machine = read_machine("zx200_trench");
-    struct dig_rig_track_options options = dig_rig_track_options_default();
-    options.rate_Hz                      = 300.0;
-    refuse(&machine, SIMPLE, &options, DIG_EINVAL, "rate", "300");
-    options               = dig_rig_track_options_default();
-    options.scene_tooth_m = 0.0;
-    refuse(&machine, SIMPLE, &options, DIG_EINVAL, "tooth-m", "0");
-    options         = dig_rig_track_options_default();
-    options.placed  = true;
-    options.pin_X_m = NAN;
-    refuse(&machine, SIMPLE, &options, DIG_EINVAL, "pin-start", "finite");
 }
 
 // Which margin is left of a pose is counted by hand for a front of one heavy bucket.

@@ -109,8 +109,7 @@ static enum dig_status load(const struct dig_rig_options *const options,
     for (size_t i = 0; i < options->inputs && status == DIG_OK; i++) {
         const char *const input = options->input[i];
         status                  = dig_campaign_is(input)
-                                      ? add_campaign(digs, input, options->scene != NULL || options->tooth_given,
-                                                     tooth_m, error)
+                                      ? add_campaign(digs, input, options->scene != NULL, tooth_m, error)
                                       : add_dig(digs, input, error);
     }
     // A file that cannot be opened is a bad argument here, not a failure of the work.
@@ -133,7 +132,7 @@ static void describe(const struct dig_machine *const machine, const double scene
     if (!tooth_known) {
         (void)fprintf(stderr,
                       "digrig: taken for digs of the rig's bucket, %.3f m from pin to tooth; "
-                      "--scene or --tooth-m says another\n",
+                      "--scene says another\n",
                       scene_tooth_m);
     }
 }
@@ -180,9 +179,7 @@ static int work(const struct dig_rig_options *const options)
             describe_air(&machine, &track);
         } else if (!options->quiet) {
             describe(&machine, track_options.scene_tooth_m,
-                     options->scene != NULL || options->tooth_given ||
-                         dig_campaign_is(options->input[0]),
-                     &track);
+                     options->scene != NULL || dig_campaign_is(options->input[0]), &track);
         }
         status = options->command == DIG_RIG_COMMAND_SERVE
                      ? dig_rig_serve(&machine, options, &track, &error)

@@ -3,9 +3,6 @@
 #include "core/command_line.h"
 
 #include <getopt.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define INTO(field) DIG_INTO(struct dig_rig_options, field)
 
@@ -29,36 +26,6 @@ static const struct dig_command commands[] = {
       "digrig serve simpleA.csv --machine config/machines/zx200_trench.yaml \\\n"
       "       --can vcan0 --fault frozen@5:2\n" },
 };
-
-static enum dig_status take_pin_start(const char *const text, void *const into,
-                                      struct dig_error *const error)
-{
-    struct dig_rig_track_options *const track = &((struct dig_rig_options *)into)->track;
-    char                               *end   = NULL;
-    const double                        X_m   = strtod(text, &end);
-    if (end != text && *end == ',') {
-        const char *const rest = end + 1;
-        const double      Z_m  = strtod(rest, &end);
-        if (end != rest && *end == '\0' && isfinite(X_m) && isfinite(Z_m)) {
-            track->placed  = true;
-            track->pin_X_m = X_m;
-            track->pin_Z_m = Z_m;
-            return DIG_OK;
-        }
-    }
-    return dig_error_set(error, DIG_EINVAL, "--pin-start %s: expected X,Z in metres", text);
-}
-
-static enum dig_status take_noise(const char *const text, void *const into,
-                                  struct dig_error *const error)
-{
-    double noise = 0.0;
-    if (!dig_number_read(text, 0.0, 1.0, &noise)) {
-        return dig_error_set(error, DIG_EINVAL, "--noise %s: expected 0 or 1", text);
-    }
-    ((struct dig_rig_options *)into)->noise = noise > 0.5;
-    return DIG_OK;
-}
 
 static enum dig_status take_exact(const char *const none, void *const into,
                                   struct dig_error *const error)
@@ -92,36 +59,21 @@ static const struct dig_option known[] = {
       INTO(start_delay_s), 0.0, 3600.0, "s" },
     { "loop", NULL, " serve ", "start again at the end, until SIGTERM", INTO(loop) },
     { "fault", "KIND[=N]@T[:DURATION]", " serve ",
-      "what goes wrong at T seconds of machine time (may be given again): not-available, nan, "
+      "what goes wrong at T seconds of machine time (may be given again): not-available, "
       "frozen, missing, out-of-range, stuck-pressures, stuck-angles, far, far-silent; drop, "
       "duplicate, reorder, corrupt, exception for a share N; delay, slow by N seconds",
       .take = take_fault },
     { "json", NULL, " serve ", "what was sent and asked for, as JSON on stdout at the end",
       INTO(json) },
     { "quiet", NULL, NULL, "no progress, only what goes wrong", INTO(quiet), .letter = 'q' },
-    { "rate", "HZ", " record air ",
-      "samples per second, a divisor of 1000 from 50 up (default 200)", INTO(track.rate_Hz), 50.0,
-      1000.0, "Hz" },
     { "truth", "TRUTH.csv", " record air ", "also write the true pose and wrench of the bucket pin",
       INTO(truth), .writes = true },
-    { "no-quantisation", NULL, " record air ",
-      "numbers as they are, not in steps of the machine's bus", INTO(quantise), .clears = true },
-    { "exact", NULL, " record air ", "as --no-noise --no-quantisation", .take = take_exact },
-    { "tooth-m", "L", " record serve ",
-      "pin to tooth of the recordings' bucket (default 0.09, the rig)", INTO(track.scene_tooth_m),
-      1e-3, 10.0, "m" },
+    { "exact", NULL, " record air ",
+      "numbers as they are: without noise, not in steps of the machine's bus", .take = take_exact },
     { "scene", "SCENE.yaml", " record serve ",
       "the scene that they were dug in tells it (a campaign names its own)", INTO(scene) },
-    { "pin-start", "X,Z", " record serve ",
-      "bucket pin at the first contact, from the boom foot (default: the place that leaves the "
-      "machine most room)",
-      .take = take_pin_start },
     { "seed", "N", NULL, "of the sensors' noise (default 1)", INTO(seed) },
     { "no-noise", NULL, NULL, "sensors without noise", INTO(noise), .clears = true },
-    { "noise", "0|1", NULL, "0: as --no-noise", .take = take_noise },
-    { "quasi-static", NULL, NULL, "leave the inertia of the links out", INTO(track.quasi_static) },
-    { "no-blend", NULL, " record serve ", "keep the velocity jumps of the recording",
-      INTO(track.blend), .clears = true },
     { "air-pace", "F", " record serve ",
       "how briskly the bucket is moved before and after a dig; 1 (default): at most 0.7 m/s2, 2: "
       "four times that",
@@ -173,18 +125,14 @@ enum dig_status dig_rig_options_parse(const int argc, char *argv[],
         .quantise = true,
         .speed    = 1.0,
     };
-    const double tooth_m       = result.track.scene_tooth_m;
-    result.track.scene_tooth_m = 0.0; // not given
     const struct dig_command *const command =
         dig_options_read(&program, argc, argv, &result, error);
     if (command == NULL) {
         return DIG_EINVAL;
     }
-    result.tooth_given         = result.track.scene_tooth_m > 0.0;
-    result.track.scene_tooth_m = result.tooth_given ? result.track.scene_tooth_m : tooth_m;
-    result.command             = command->name[0] == 'r'   ? DIG_RIG_COMMAND_RECORD
-                                 : command->name[0] == 'a' ? DIG_RIG_COMMAND_AIR
-                                                           : DIG_RIG_COMMAND_SERVE;
+    result.command = command->name[0] == 'r'   ? DIG_RIG_COMMAND_RECORD
+                     : command->name[0] == 'a' ? DIG_RIG_COMMAND_AIR
+                                               : DIG_RIG_COMMAND_SERVE;
     for (int i = optind; i < argc; i++) {
         if (result.inputs == DIG_RIG_INPUTS_MAX) {
             return dig_error_set(error, DIG_EINVAL, "more than %d recordings", DIG_RIG_INPUTS_MAX);

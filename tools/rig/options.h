@@ -20,8 +20,7 @@ struct dig_rig_options {
     size_t                       inputs;
     const char                  *input[DIG_RIG_INPUTS_MAX]; // recordings, or one campaign folder
     const char                  *machine;
-    const char                  *scene;       // NULL: none
-    bool                         tooth_given; // track.scene_tooth_m came from the command line
+    const char                  *scene; // NULL: none
     struct dig_rig_track_options track;
     uint64_t                     seed;
     bool                         noise;

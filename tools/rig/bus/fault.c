@@ -10,7 +10,6 @@ static const struct {
     double                  most; // of its amount; 0: it has none
 } kinds[] = {
     { "not-available", DIG_RIG_FAULT_NOT_AVAILABLE, 0.0 },
-    { "nan", DIG_RIG_FAULT_NOT_AVAILABLE, 0.0 },
     { "frozen", DIG_RIG_FAULT_FROZEN, 0.0 },
     { "missing", DIG_RIG_FAULT_MISSING, 0.0 },
     { "out-of-range", DIG_RIG_FAULT_OUT_OF_RANGE, 0.0 },
@@ -75,7 +74,7 @@ enum dig_status dig_rig_fault_add(const char *const text, struct dig_rig_faults 
     }
     return dig_error_set(
         error, DIG_EINVAL,
-        "--fault %s: expected not-available, nan, frozen, missing, "
+        "--fault %s: expected not-available, frozen, missing, "
         "out-of-range, stuck-pressures, stuck-angles, far, far-silent, or drop, duplicate, "
         "reorder, corrupt, exception with =SHARE, or delay, slow with =SECONDS; "
         "then @SECONDS[:DURATION]",

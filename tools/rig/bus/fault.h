@@ -1,7 +1,6 @@
 // Faults injected into a bus, each at a given time.
 //
 //   not-available@5:2   from 5 s on, for 2 s, every signal reads "not available"
-//   nan@5:2             the same: neither bus has another way to say it
 //   frozen@5:2          values and alive counter stand still
 //   missing@5:2         no frame is sent, no request answered
 //   out-of-range@5      from 5 s to the end: pressures of 60 MPa, angles of 12 rad, of a force

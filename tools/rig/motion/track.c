@@ -21,25 +21,6 @@ struct dig_rig_track_options dig_rig_track_options_default(void)
     };
 }
 
-static enum dig_status check(const struct dig_rig_track_options *const options,
-                             struct dig_error *const                   error)
-{
-    if (!(options->scene_tooth_m > 0.0 && isfinite(options->scene_tooth_m))) {
-        return dig_error_set(error, DIG_EINVAL, "--tooth-m %g: expected metres, > 0",
-                             options->scene_tooth_m);
-    }
-    const double every = 1.0 / (DIG_RIG_STEP_s * options->rate_Hz);
-    if (!(every >= 1.0 && every <= 20.0 && fabs(every - round(every)) < 1e-9)) {
-        return dig_error_set(error, DIG_EINVAL,
-                             "--rate %g: in Hz, expected a divisor of 1000 from 50 to 1000",
-                             options->rate_Hz);
-    }
-    if (options->placed && !(isfinite(options->pin_X_m) && isfinite(options->pin_Z_m))) {
-        return dig_error_set(error, DIG_EINVAL, "--pin-start: expected two finite numbers");
-    }
-    return DIG_OK;
-}
-
 static struct dig_rig_pose placed(const struct dig_rig_path *const path, const size_t i,
                                   const struct dig_rig_placement *const placement)
 {
@@ -49,10 +30,9 @@ static struct dig_rig_pose placed(const struct dig_rig_path *const path, const s
 }
 
 // Whether inertia counts at frame i: the machine stands still at both ends.
-static bool moves(const struct dig_rig_track_options *const options,
-                  const struct dig_rig_path *const path, const size_t i)
+static bool moves(const struct dig_rig_path *const path, const size_t i)
 {
-    return !options->quasi_static && i >= reach && i + reach < path->frames;
+    return i >= reach && i + reach < path->frames;
 }
 
 // Accelerations of the links at frame i, or of a bucket that a force sensor carries: second
@@ -106,8 +86,7 @@ static enum dig_status refuse(const struct dig_machine *const    machine,
                          dig_rig_margin_text(margin, sizeof text, text), at_s);
 }
 
-static enum dig_status fill(const struct dig_machine *const           machine,
-                            const struct dig_rig_track_options *const options,
+static enum dig_status fill(const struct dig_machine *const  machine,
                             const struct dig_rig_path *const path, const size_t every,
                             struct dig_rig_track *const track, struct dig_error *const error)
 {
@@ -119,7 +98,7 @@ static enum dig_status fill(const struct dig_machine *const           machine,
         struct dig_rig_motion     motion = { .turn_radps2 = { 0.0 } };
         struct dig_rig_state      state;
         enum dig_status           status = DIG_OK;
-        if (moves(options, path, i)) {
+        if (moves(path, i)) {
             status = move(machine, path, i, &track->placement, &motion);
         }
         if (status == DIG_OK) {
@@ -147,11 +126,10 @@ static enum dig_status fill(const struct dig_machine *const           machine,
     return track->nearest.share > 0.0 ? DIG_OK : refuse(machine, &track->nearest, worst_s, error);
 }
 
-// The rows of a path, placed, or where the machine has most room.
+// The rows of a path as it is, or where the machine has most room.
 static enum dig_status lay(const struct dig_machine *const           machine,
                            const struct dig_rig_track_options *const options,
                            const struct dig_rig_path *const path, const bool search,
-                           const struct dig_rig_placement placement,
                            struct dig_rig_track *const track, struct dig_error *const error)
 {
     const size_t         every  = (size_t)lround(1.0 / (DIG_RIG_STEP_s * options->rate_Hz));
@@ -160,7 +138,6 @@ static enum dig_status lay(const struct dig_machine *const           machine,
         .rows          = (path->frames - 1) / every + 1,
         .step_s        = (double)every * DIG_RIG_STEP_s,
         .nearest       = { .share = INFINITY },
-        .placement     = placement,
         .blend_off_m   = path->blend_off_m,
         .blend_off_rad = path->blend_off_rad,
     };
@@ -171,7 +148,7 @@ static enum dig_status lay(const struct dig_machine *const           machine,
     result.row                    = row;
     if (status == DIG_OK) {
         status = row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
-                             : fill(machine, options, path, every, &result, error);
+                             : fill(machine, path, every, &result, error);
     }
     if (status != DIG_OK) {
         free(row);
@@ -190,10 +167,6 @@ enum dig_status dig_rig_track_build(const struct dig_machine *const           ma
 {
     assert(machine != NULL && options != NULL && track != NULL);
 
-    enum dig_status status = check(options, error);
-    if (status != DIG_OK) {
-        return status;
-    }
     const double                      tooth_m      = machine->link[DIG_JOINT_BUCKET].length_m;
     const struct dig_rig_path_options path_options = {
         .lambda   = tooth_m / options->scene_tooth_m,
@@ -203,14 +176,12 @@ enum dig_status dig_rig_track_build(const struct dig_machine *const           ma
         .blend    = options->blend,
     };
     struct dig_rig_path path;
-    status = dig_rig_path_build(&path_options, recordings, recording, &path, error);
+    enum dig_status status = dig_rig_path_build(&path_options, recordings, recording, &path, error);
     if (status != DIG_OK) {
         return status;
     }
 
-    const struct dig_rig_placement placement = { .X_m = options->pin_X_m, .Z_m = options->pin_Z_m };
-    const bool                     search    = !options->placed && !machine->sensor.fitted;
-    status = lay(machine, options, &path, search, placement, track, error);
+    status = lay(machine, options, &path, !machine->sensor.fitted, track, error);
     dig_rig_path_finish(&path);
     return status;
 }
@@ -221,16 +192,12 @@ enum dig_status dig_rig_track_build_air(const struct dig_machine *const         
                                         struct dig_error *const                   error)
 {
     assert(machine != NULL && options != NULL && track != NULL);
-    static const struct dig_rig_placement as_it_is = { .X_m = 0.0 };
-    struct dig_rig_path                   path;
-    enum dig_status                       status = check(options, error);
-    if (status == DIG_OK) {
-        status = dig_rig_air_build(machine, &path, error);
-    }
+    struct dig_rig_path path;
+    enum dig_status     status = dig_rig_air_build(machine, &path, error);
     if (status != DIG_OK) {
         return status;
     }
-    status = lay(machine, options, &path, false, as_it_is, track, error);
+    status = lay(machine, options, &path, false, track, error);
     dig_rig_path_finish(&path);
     return status;
 }

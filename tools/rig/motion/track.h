@@ -38,9 +38,6 @@ struct dig_rig_track_options {
     bool   air;
     double air_pace; // tools/rig/motion/path.h
     bool   blend;
-    bool   quasi_static; // leave the inertia of the links out
-    bool   placed;       // start at pin_X_m, pin_Z_m instead of searching
-    double pin_X_m, pin_Z_m;
 };
 
 struct dig_rig_track_options dig_rig_track_options_default(void);
@@ -48,17 +45,15 @@ struct dig_rig_track_options dig_rig_track_options_default(void);
 /// Path, placement, joints, pressures. Refuses what the machine cannot do, naming what stops it,
 /// its peak and its limit: DIG_EUNREACHABLE for a pose or a joint, stroke or lever out of bounds,
 /// DIG_EINVAL for a dig beyond a relief pressure or a force sensor's range, or that lifts or tips
-/// the machine, or an option out of its domain; DIG_ENOMEM. A bucket on a force sensor can be
-/// carried anywhere: its pin starts at 0, 0 unless it is placed. Accelerations are central
-/// differences of the links' places over
-/// +-5 ms. A few seconds for minutes of machine time.
+/// the machine; DIG_ENOMEM. A bucket on a force sensor can be carried anywhere: its pin starts at
+/// 0, 0. Accelerations are central differences of the links' places over +-5 ms. A few seconds for
+/// minutes of machine time.
 DIG_MUST_CHECK enum dig_status
 dig_rig_track_build(const struct dig_machine *machine, const struct dig_rig_track_options *options,
                     size_t recordings, const struct dig_recording recording[],
                     struct dig_rig_track *track, struct dig_error *error);
 
-/// The same of a motion in free air (tools/rig/motion/air.h): of the options rate_Hz and
-/// quasi_static count.
+/// The same of a motion in free air (tools/rig/motion/air.h): of the options rate_Hz counts.
 DIG_MUST_CHECK enum dig_status dig_rig_track_build_air(const struct dig_machine           *machine,
                                                        const struct dig_rig_track_options *options,
                                                        struct dig_rig_track               *track,
