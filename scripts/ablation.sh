@@ -59,7 +59,7 @@ no cubic terms|closed_loop/model/response_surface.c|s/MOST_DEGREE = 3/MOST_DEGRE
 cubic terms are free (5: 0)|closed_loop/model/response_surface.c|s/cubic_prior = 5.0/cubic_prior = 0.0/|4
 readings have no noise of their own|closed_loop/recordings/observe.c|s/dig_reading_noise(held, c->raw)/0.0/|30
 noise of forces never lasts|closed_loop/verdict/trace.c|s/status = dig_trace_tell_noise(w, &w->before)/status = DIG_OK/|110
-noise of pressures never lasts|closed_loop/machine/machine_noise.c|s/if (size2_N2\[j\] > 0.0)/if (false)/|280
+noise of pressures never lasts|closed_loop/machine/machine_noise.c|s/if (size2_N2 > 0.0 \&\& /if (false \&\& /|280
 forces are never late|closed_loop/fit/forward.c|s/return is_late(effect) && any_rate(batch)/return false/|110
 free air begins three tenths above (.1: .3)|closed_loop/machine_digs/free_air.c|s/above_share = 0.1/above_share = 0.3/|0
 a machine needs no lead over no name (6: 0)|closed_loop/verdict/machine_choice.c|s/unnamed_cost = DIG_SEARCH_TOLD_APART/unnamed_cost = 0.0/|2

@@ -20,15 +20,12 @@ static const double tie = 5.0;
 // A chamber that changes a push by less than this share of what the other does is a return side.
 static const double little_share = 0.5;
 
+// A column is of the fit's set where its cause is named.
 struct work {
     struct dig_air *air;
     struct dig_fit  fit;
-    int             cause[DIG_LINES_COLUMNS_MAX]; // that each column belongs to; -1: none
     double          tolerance[DIG_CAUSES];
-    double          base[DIG_LINES_COLUMNS_MAX];  // width of each column's tolerance, in scales
-    double          gross[DIG_LINES_COLUMNS_MAX]; // and of a cause
-    double          width[DIG_LINES_COLUMNS_MAX]; // of the fit at hand
-    unsigned        asked;                        // a bit each
+    unsigned        asked; // a bit each
 };
 
 static const struct dig_cylinder *cylinder_of(const struct work *const w, const size_t joint)
@@ -72,9 +69,9 @@ static void set_widths(struct work *const w)
         const struct dig_cause_column meaning = dig_cause_column_of(&w->air->machine, column);
         const int                     cause   = meaning.cause;
 
-        w->cause[c] = cause;
-        w->base[c]  = meaning.tolerance / column->scale;
-        w->gross[c] = meaning.wrong / column->scale;
+        w->fit.of[c]   = cause;
+        w->fit.base[c] = meaning.tolerance / column->scale;
+        w->fit.wide[c] = meaning.wrong / column->scale;
         if (cause < 0) {
             continue;
         }
@@ -84,58 +81,53 @@ static void set_widths(struct work *const w)
         const bool returns = factor && is_return_side(w, (size_t)cause % DIG_JOINTS,
                                                       column->parameter % DIG_CHAMBERS);
         if (((w->asked >> cause) & 1U) == 0 || returns) {
-            w->gross[c] = w->base[c];
+            w->fit.wide[c] = w->fit.base[c];
         }
     }
 }
 
-static bool is_of(const struct work *const w, const size_t column, const unsigned causes)
+// The log evidence where these are named.
+static double solve(struct work *const w, const unsigned named, const enum dig_fit_leave leave)
 {
-    return w->cause[column] >= 0 && ((causes >> w->cause[column]) & 1U) != 0;
-}
-
-// The log evidence where these are named; whole: with values and covariance.
-static double solve(struct work *const w, const unsigned named, const bool whole)
-{
-    for (size_t c = 0; c < w->fit.lines.columns; c++) {
-        w->width[c] = is_of(w, c, named) ? w->gross[c] : w->base[c];
-    }
-    struct dig_fit_answer answer = { .at         = whole ? w->fit.at : NULL,
-                                     .covariance = whole ? w->fit.covariance : NULL };
-    dig_fit_solve_each(&w->fit, w->width, &answer);
-    return answer.log_evidence;
+    double widths[DIG_LINES_COLUMNS_MAX];
+    dig_fit_widths(&w->fit, named, 1.0, widths);
+    return dig_fit_solve_each(&w->fit, widths, leave).log_evidence;
 }
 
 // Of causes that are asked for.
 static double evidence(void *const context, const unsigned named)
 {
     struct work *const w = context;
-    return (named & ~w->asked) == 0 ? solve(w, named, false) : -(double)INFINITY;
+    return (named & ~w->asked) == 0 ? solve(w, named, DIG_FIT_NOTHING) : -(double)INFINITY;
 }
 
 // Sums the equations where the lines stand; s2 by what everything together leaves.
 static void take_slopes(struct work *const w)
 {
-    dig_lines_update(&w->fit.lines, DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE);
-    dig_fit_sum(&w->fit, NULL, w->gross);
+    dig_lines_update(&w->fit.lines, DIG_LINES_ALL);
+    dig_fit_sum(&w->fit, NULL);
 }
 
 // The causes named, with the lines where they lead.
 static unsigned find(struct work *const w)
 {
-    const struct dig_greedy causes = { DIG_CAUSES, log(DIG_CAUSES / false_alarm), evidence, w };
-    unsigned                named  = 0;
+    const struct dig_greedy  causes = { DIG_CAUSES, log(DIG_CAUSES / false_alarm), evidence, w };
+    unsigned                 named  = 0;
+    struct dig_machine_noise noise;
+    double                   widths[DIG_LINES_COLUMNS_MAX];
     take_slopes(w);
     // Rows of valves that hunt scatter more than their sensors.
-    (void)solve(w, (1U << DIG_CAUSES) - 1U, true);
-    (void)dig_machine_noise_widen(&w->fit.lines, w->fit.at);
+    (void)solve(w, (1U << DIG_CAUSES) - 1U, DIG_FIT_VALUES);
+    dig_machine_noise_tell(&w->fit.lines, w->fit.at, &noise);
+    (void)dig_machine_noise_widen(&noise, w->air);
     for (int round = 0; round < ROUNDS; round++) {
         const unsigned before = named;
         take_slopes(w);
         named = dig_greedy_select(&causes, 0);
-        (void)solve(w, named, true);
+        (void)solve(w, named, DIG_FIT_VALUES);
+        dig_fit_widths(&w->fit, named, 1.0, widths);
         // Near its end this moves within a fortieth of what is allowed.
-        if (dig_fit_step(&w->fit, w->width) < 0.025 && named == before) {
+        if (dig_fit_step(&w->fit, widths) < 0.025 && named == before) {
             break;
         }
     }
@@ -146,7 +138,7 @@ static unsigned find(struct work *const w)
 // How sure a column is, with the covariance as last solved; 0 where it was not asked.
 static double sureness(const struct work *const w, const size_t column)
 {
-    return w->gross[column] > w->base[column]
+    return w->fit.wide[column] > w->fit.base[column]
                ? 1.0 / fmax(w->fit.covariance[column * w->fit.lines.columns + column], 1e-12)
                : 0.0;
 }
@@ -156,7 +148,7 @@ static double share_of(const struct work *const w, const size_t cause, const siz
 {
     const struct dig_lines_column *const c     = &w->fit.lines.column[column];
     const size_t                         joint = cause % DIG_JOINTS;
-    if (w->cause[column] != (int)cause) {
+    if (w->fit.of[column] != (int)cause) {
         return 0.0;
     }
     if (c->effect != DIG_EFFECT_PRESSURE_OFFSET) {
@@ -179,7 +171,7 @@ static void value_of(struct work *const w, const unsigned named, const size_t k,
                      struct dig_cause *const cause)
 {
     const size_t n = w->fit.lines.columns;
-    (void)solve(w, named, true);
+    (void)solve(w, named, DIG_FIT_COVARIANCE);
     double value    = 0.0;
     double variance = 0.0;
     for (size_t a = 0; a < n; a++) {
@@ -274,7 +266,8 @@ enum dig_status dig_causes_find(struct dig_air *const air, const bool moves[DIG_
         figures(&w, named, causes->cause);
         // The causes alone: what is within its tolerance is no one's to mend.
         for (size_t c = 0; c < w.fit.lines.columns; c++) {
-            alone[c] = is_of(&w, c, named) ? w.fit.lines.at[c] : 0.0;
+            const bool is_named = w.fit.of[c] >= 0 && ((named >> w.fit.of[c]) & 1U) != 0;
+            alone[c]            = is_named ? w.fit.lines.at[c] : 0.0;
         }
         dig_lines_correct(&w.fit.lines, alone, correction);
     }

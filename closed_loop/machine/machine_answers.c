@@ -109,36 +109,33 @@ struct beside {
     double far;        // from absent, root mean square in its scale
 };
 
-// Solves for it beside an answer's effects, whose priors are so wide.
-static void solve_beside(const struct dig_machine_search *const s, const double widths[],
-                         const size_t column, struct dig_fit_answer *const solved)
+// Solves for it beside an answer's effects, whose priors are so wide: the log evidence.
+static double solve_beside(const struct dig_machine_search *const s, const double widths[],
+                           const size_t column)
 {
     double with[DIG_LINES_COLUMNS_MAX];
     memcpy(with, widths, s->fit.lines.columns * sizeof with[0]);
     with[column] = 1.0;
-    dig_fit_solve_each(&s->fit, with, solved);
+    return dig_fit_solve_each(&s->fit, with, DIG_FIT_COVARIANCE).log_evidence;
 }
 
 // All such numbers; how many.
 static size_t find_beside(struct dig_machine_search *const s, const double widths[],
                           struct beside beside[DIG_LINES_COLUMNS_MAX])
 {
-    const size_t          n      = s->fit.lines.columns;
-    struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
-    size_t                found  = 0;
-    dig_fit_solve_each(&s->fit, widths, &solved);
-    const double without = solved.log_evidence;
+    const size_t n       = s->fit.lines.columns;
+    const double without = dig_fit_solve_each(&s->fit, widths, DIG_FIT_NOTHING).log_evidence;
+    size_t       found   = 0;
     for (size_t c = 0; c < n; c++) {
         const struct dig_lines_column *const column = &s->fit.lines.column[c];
         if (widths[c] > 0.0 || column->segment >= 0 || dig_lines_is_bent(&s->fit.lines, c)) {
             continue;
         }
-        solve_beside(s, widths, c, &solved);
-        beside[found++] = (struct beside){
-            .column     = c,
-            .log_weight = solved.log_evidence - without -
-                          log((double)dig_effect_of(column->effect)->parameters),
-            .far = hypot(s->fit.at[c], sqrt(s->fit.covariance[(n + 1) * c])),
+        const double with = solve_beside(s, widths, c);
+        beside[found++]   = (struct beside){
+              .column     = c,
+              .log_weight = with - without - log((double)dig_effect_of(column->effect)->parameters),
+              .far        = hypot(s->fit.at[c], sqrt(s->fit.covariance[(n + 1) * c])),
         };
     }
     return found;
@@ -179,11 +176,10 @@ static void write_others(struct dig_machine_search *const s, const struct number
         const size_t                         c      = beside[i].column;
         const struct dig_lines_column *const column = &s->fit.lines.column[c];
         struct dig_machine_other *const      other  = &answer->other[answer->others];
-        struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
         if (!(beside[i].far > least_far)) {
             break;
         }
-        solve_beside(s, widths, c, &solved);
+        (void)solve_beside(s, widths, c);
         *other = (struct dig_machine_other){ .effect    = column->effect,
                                              .parameter = column->parameter,
                                              .value     = column->scale * beside[i].far };
@@ -202,18 +198,17 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
                          const struct dig_model_effect effect[], const bool wide,
                          struct dig_machine_answer *const answer)
 {
-    struct dig_fit_answer solved = { .at = s->fit.at, .covariance = s->fit.covariance };
-    struct numbers        numbers;
-    double                widths[DIG_LINES_COLUMNS_MAX];
-    size_t                n   = 0;
-    unsigned              set = 0;
+    struct numbers numbers;
+    double         widths[DIG_LINES_COLUMNS_MAX];
+    size_t         n   = 0;
+    unsigned       set = 0;
     for (size_t e = 0; e < effects; e++) {
         set |= 1U << (unsigned)effect[e].effect;
     }
-    dig_fit_solve(&s->fit, set, &solved);
+    struct dig_fit_answer solved = dig_fit_solve(&s->fit, set, DIG_FIT_COVARIANCE);
     if (wide) {
         const double narrow = solved.width;
-        dig_fit_solve_wide(&s->fit, set, &solved);
+        solved              = dig_fit_solve_wide(&s->fit, set, DIG_FIT_COVARIANCE);
         if (!(solved.width > narrow)) {
             return false;
         }
@@ -225,7 +220,7 @@ static bool write_answer(struct dig_machine_search *const s, const size_t effect
     dig_fit_widths(&s->fit, set, solved.width, widths);
     if (s->unlike.is && effects == 0) {
         widths[s->unlike.column] = DIG_UNLIKE_WIDTH;
-        dig_fit_solve_each(&s->fit, widths, &solved);
+        (void)dig_fit_solve_each(&s->fit, widths, DIG_FIT_COVARIANCE);
     }
     for (size_t e = 0; e < effects; e++) {
         const struct dig_model_effect now = dig_machine_effect(s, effect[e].effect, 0.0);

@@ -129,14 +129,12 @@ static void sum_up(const struct dig_lines *const lines, const double rest[], con
 static double evidence(const struct dig_fit *const fit, const size_t form, const bool follows,
                        const double share)
 {
-    struct dig_fit_answer answer          = { .at = NULL };
-    double                widths[COLUMNS] = { 0.0 };
+    double widths[COLUMNS] = { 0.0 };
     for (size_t a = form == 0 ? 0 : 1; a < (form == 0 ? 1 : HALF); a++) {
         widths[a]        = share;
         widths[HALF + a] = follows ? share : 0.0;
     }
-    dig_fit_solve_each(fit, widths, &answer);
-    return answer.log_evidence;
+    return dig_fit_solve_each(fit, widths, DIG_FIT_NOTHING).log_evidence;
 }
 
 struct dig_machine_drift dig_machine_drift_ask(const struct dig_lines *const lines, const double s2)

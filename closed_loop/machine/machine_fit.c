@@ -11,7 +11,8 @@
 // effect of many parameters would be given to another that has fewer, and of a strong one the rest
 // to what the file may have wrong.
 static const double width[] = { 4.0, 1.0, 0.25, 0.0625, 0.015625 };
-enum { WIDTHS = sizeof width / sizeof width[0], SCALE = 1, WIDTHS_OF_SETS = SCALE + 1 };
+static const double scale   = 1.0;
+enum { WIDTHS = sizeof width / sizeof width[0], WIDTHS_OF_SETS = 2 };
 
 // A step is halved so often.
 enum { HALVINGS = 6 };
@@ -22,17 +23,24 @@ enum dig_status dig_fit_make(struct dig_air *const air, const double file_scale[
     assert(air != NULL && fit != NULL);
     *fit                         = (struct dig_fit){ .s2 = 1.0 };
     const enum dig_status status = dig_lines_make(air, file_scale, &fit->lines);
-    const size_t          n2     = fit->lines.columns * fit->lines.columns;
+    const size_t          n      = fit->lines.columns;
     if (status != DIG_OK) {
         return status;
     }
-    fit->slope2 = malloc(3 * n2 * sizeof *fit->slope2);
+    fit->slope2 = malloc((3 * n * n + n) * sizeof *fit->slope2);
     if (fit->slope2 == NULL) {
         dig_fit_finish(fit);
         return DIG_ENOMEM;
     }
-    fit->work       = fit->slope2 + n2;
-    fit->covariance = fit->work + n2;
+    fit->work       = fit->slope2 + n * n;
+    fit->covariance = fit->work + n * n;
+    fit->at         = fit->covariance + n * n;
+    for (size_t c = 0; c < n; c++) {
+        const bool of_file = fit->lines.column[c].effect == DIG_EFFECT_UNLISTED;
+        fit->of[c]         = of_file ? -1 : (int)fit->lines.column[c].effect;
+        fit->base[c]       = of_file ? 1.0 : 0.0;
+        fit->wide[c]       = 1.0;
+    }
     return DIG_OK;
 }
 
@@ -45,10 +53,10 @@ void dig_fit_finish(struct dig_fit *const fit)
     }
 }
 
-void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
-                        struct dig_fit_answer *const answer)
+struct dig_fit_answer dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
+                                         const enum dig_fit_leave leave)
 {
-    assert(fit != NULL && widths != NULL && answer != NULL);
+    assert(fit != NULL && widths != NULL);
     const size_t  all = fit->lines.columns;
     double *const h   = fit->work;
     double        x[DIG_LINES_COLUMNS_MAX];
@@ -70,34 +78,35 @@ void dig_fit_solve_each(const struct dig_fit *const fit, const double widths[],
     }
     const bool solved = dig_cholesky(n, h) == DIG_OK; // H is never less than I
     dig_cholesky_solve(n, h, x);
-
     double gain  = 0.0;
     double size2 = 0.0;
     for (size_t i = 0; i < n; i++) {
         gain -= x[i] * share[i] * fit->slope_rest[column[i]] / fit->s2;
         size2 += x[i] * x[i];
     }
-    answer->width        = 1.0;
-    answer->log_evidence = solved ? 0.5 * (gain - dig_lower_log_det(n, h)) : (double)-INFINITY;
-    answer->rest2        = fit->rest2 - fit->s2 * (gain + size2);
-    if (answer->at != NULL) {
-        memset(answer->at, 0, all * sizeof(double));
+    if (leave >= DIG_FIT_VALUES) {
+        memset(fit->at, 0, all * sizeof(double));
         for (size_t i = 0; i < n; i++) {
-            answer->at[column[i]] = share[i] * x[i];
+            fit->at[column[i]] = share[i] * x[i];
         }
     }
-    if (answer->covariance != NULL) {
-        memset(answer->covariance, 0, all * all * sizeof(double));
-    }
-    for (size_t i = 0; i < n && answer->covariance != NULL; i++) {
-        double one[DIG_LINES_COLUMNS_MAX];
-        memset(one, 0, n * sizeof one[0]);
-        one[i] = 1.0;
-        dig_cholesky_solve(n, h, one);
-        for (size_t j = 0; j < n; j++) {
-            answer->covariance[column[i] * all + column[j]] = share[i] * share[j] * one[j];
+    if (leave == DIG_FIT_COVARIANCE) {
+        memset(fit->covariance, 0, all * all * sizeof(double));
+        for (size_t i = 0; i < n; i++) {
+            double one[DIG_LINES_COLUMNS_MAX];
+            memset(one, 0, n * sizeof one[0]);
+            one[i] = 1.0;
+            dig_cholesky_solve(n, h, one);
+            for (size_t j = 0; j < n; j++) {
+                fit->covariance[column[i] * all + column[j]] = share[i] * share[j] * one[j];
+            }
         }
     }
+    return (struct dig_fit_answer){
+        .log_evidence = solved ? 0.5 * (gain - dig_lower_log_det(n, h)) : (double)-INFINITY,
+        .rest2        = fit->rest2 - fit->s2 * (gain + size2),
+        .width        = 1.0,
+    };
 }
 
 void dig_fit_widths(const struct dig_fit *const fit, const unsigned set, const double wide,
@@ -105,21 +114,21 @@ void dig_fit_widths(const struct dig_fit *const fit, const unsigned set, const d
 {
     assert(fit != NULL && widths != NULL);
     for (size_t c = 0; c < fit->lines.columns; c++) {
-        const enum dig_effect_id effect = fit->lines.column[c].effect;
-
-        widths[c] = effect == DIG_EFFECT_UNLISTED ? 1.0 : ((set >> effect) & 1U) != 0 ? wide : 0.0;
+        const bool in_set = fit->of[c] >= 0 && ((set >> fit->of[c]) & 1U) != 0;
+        widths[c]         = in_set ? wide * fit->wide[c] : fit->base[c];
     }
 }
 
 // As dig_fit_solve(), with priors of one width, not counted.
-static void solve_at(const struct dig_fit *const fit, const unsigned set, const size_t wide,
-                     struct dig_fit_answer *const answer)
+static struct dig_fit_answer solve_at(const struct dig_fit *const fit, const unsigned set,
+                                      const double wide, const enum dig_fit_leave leave)
 {
     double widths[DIG_LINES_COLUMNS_MAX];
-    dig_fit_widths(fit, set, width[wide], widths);
-    dig_fit_solve_each(fit, widths, answer);
-    answer->log_evidence -= fit->log_none;
-    answer->width = width[wide];
+    dig_fit_widths(fit, set, wide, widths);
+    struct dig_fit_answer answer = dig_fit_solve_each(fit, widths, leave);
+    answer.log_evidence -= fit->log_none;
+    answer.width = wide;
+    return answer;
 }
 
 // Moves the equations from where the lines are to all absent; bent columns stay.
@@ -147,15 +156,12 @@ static void move_to_absent(struct dig_fit *const fit)
 void dig_fit_set_noise(struct dig_fit *const fit, const double s2)
 {
     assert(fit != NULL && s2 > 0.0);
-    struct dig_fit_answer none = { .at = NULL };
-    double                widths[DIG_LINES_COLUMNS_MAX];
-    dig_fit_widths(fit, 0, 0.0, widths);
-    fit->s2 = s2;
-    dig_fit_solve_each(fit, widths, &none);
-    fit->log_none = none.log_evidence;
+    fit->s2       = s2;
+    fit->log_none = 0.0;
+    fit->log_none = solve_at(fit, 0, 0.0, DIG_FIT_NOTHING).log_evidence;
 }
 
-void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double widths[])
+void dig_fit_sum(struct dig_fit *const fit, const double weight[])
 {
     assert(fit != NULL);
     const size_t n = fit->lines.columns;
@@ -180,55 +186,48 @@ void dig_fit_sum(struct dig_fit *const fit, const double weight[], const double 
     }
     move_to_absent(fit);
 
-    struct dig_fit_answer best = { .at = NULL };
-    double                effects[DIG_LINES_COLUMNS_MAX];
-    dig_fit_widths(fit, DIG_MACHINE_ALL_EFFECTS, width[SCALE], effects);
-    fit->s2 = 1.0;
-    dig_fit_solve_each(fit, widths != NULL ? widths : effects, &best);
+    fit->s2                = 1.0;
     const double free_rows = fmax(fit->rows - (double)n, 0.25 * fit->rows);
-    dig_fit_set_noise(fit, fmax(1.0, best.rest2 / fmax(free_rows, 1.0)));
+    const double rest2     = solve_at(fit, ~0U, 1.0, DIG_FIT_NOTHING).rest2;
+    dig_fit_set_noise(fit, fmax(1.0, rest2 / fmax(free_rows, 1.0)));
 }
 
 // The width that gives one effect the most evidence. Of several, none is narrow: a weak one beside
 // another is what the other's formula lacks.
-static size_t width_of(const struct dig_fit *const fit, const unsigned set)
+static double width_of(const struct dig_fit *const fit, const unsigned set)
 {
-    struct dig_fit_answer best = { .log_evidence = -INFINITY };
-    size_t                wide = SCALE;
-    const size_t          most = (set & (set - 1U)) == 0 ? WIDTHS : WIDTHS_OF_SETS;
+    double       best = -INFINITY;
+    double       wide = scale;
+    const size_t most = (set & (set - 1U)) == 0 ? WIDTHS : WIDTHS_OF_SETS;
     for (size_t w = 0; w < most; w++) {
-        struct dig_fit_answer tried = { .at = NULL };
-        solve_at(fit, set, w, &tried);
-        if (tried.log_evidence > best.log_evidence) {
-            best = tried;
-            wide = w;
-        }
+        const double tried = solve_at(fit, set, width[w], DIG_FIT_NOTHING).log_evidence;
+        wide               = tried > best ? width[w] : wide;
+        best               = fmax(tried, best);
     }
     return wide;
 }
 
-void dig_fit_solve(const struct dig_fit *const fit, const unsigned set,
-                   struct dig_fit_answer *const answer)
+struct dig_fit_answer dig_fit_solve(const struct dig_fit *const fit, const unsigned set,
+                                    const enum dig_fit_leave leave)
 {
-    assert(fit != NULL && answer != NULL);
-    solve_at(fit, set, width_of(fit, set), answer);
-    answer->log_evidence -= set != 0 ? log(WIDTHS) : 0.0;
+    assert(fit != NULL);
+    struct dig_fit_answer answer = solve_at(fit, set, width_of(fit, set), leave);
+    answer.log_evidence -= set != 0 ? log(WIDTHS) : 0.0;
+    return answer;
 }
 
-void dig_fit_solve_wide(const struct dig_fit *const fit, const unsigned set,
-                        struct dig_fit_answer *const answer)
+struct dig_fit_answer dig_fit_solve_wide(const struct dig_fit *const fit, const unsigned set,
+                                         const enum dig_fit_leave leave)
 {
-    assert(fit != NULL && answer != NULL);
-    solve_at(fit, set, SCALE, answer);
-    answer->log_evidence -= log(WIDTHS);
+    assert(fit != NULL);
+    struct dig_fit_answer answer = solve_at(fit, set, scale, leave);
+    answer.log_evidence -= log(WIDTHS);
+    return answer;
 }
 
 double dig_fit_evidence(const struct dig_fit *const fit, const unsigned set)
 {
-    assert(fit != NULL);
-    struct dig_fit_answer answer = { .at = NULL };
-    dig_fit_solve(fit, set, &answer);
-    return answer.log_evidence;
+    return dig_fit_solve(fit, set, DIG_FIT_NOTHING).log_evidence;
 }
 
 // What is left at other values, and what priors of these widths lose there.

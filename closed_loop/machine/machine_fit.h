@@ -22,27 +22,34 @@
 
 /// Free air made linear, its normal equations summed over digs, at all parameters absent. Free with
 /// dig_fit_finish().
+///
+/// A set is a bit for each thing that columns belong to: for each effect of enum dig_effect_id, as
+/// made; whoever asks of something else than effects writes of, base and wide anew.
 struct dig_fit {
     struct dig_lines lines;
-    double           rows, rest2;
-    double           slope_rest[DIG_LINES_COLUMNS_MAX]; // as struct dig_lines_normal
-    double          *slope2;
-    double           s2;       // variance of the noise in the rows' sigmas
-    double           log_none; // log evidence of no effect
-    double          *work;     // [columns * columns]
-    // Room for answers.
-    double  at[DIG_LINES_COLUMNS_MAX];
+    int              of[DIG_LINES_COLUMNS_MAX];   // the bit of a column; -1: of none
+    double           base[DIG_LINES_COLUMNS_MAX]; // width of its prior beside a set, in scales; 0:
+                                                  // it stays absent
+    double  wide[DIG_LINES_COLUMNS_MAX];          // and in it, of a set of width 1
+    double  rows, rest2;
+    double  slope_rest[DIG_LINES_COLUMNS_MAX]; // as struct dig_lines_normal
+    double *slope2;
+    double  s2;       // variance of the noise in the rows' sigmas
+    double  log_none; // log evidence of the empty set
+    double *work;     // [columns * columns]
+    // Values and covariance as last solved for, 0 where not of the set.
+    double *at;         // [columns]
     double *covariance; // [columns * columns]
 };
 
-/// One set of effects, solved.
+/// What of an answer is left in the fit: nothing, its values, or both.
+enum dig_fit_leave { DIG_FIT_NOTHING, DIG_FIT_VALUES, DIG_FIT_COVARIANCE };
+
+/// One set, solved.
 struct dig_fit_answer {
     double log_evidence;
     double rest2; // that remains
     double width; // of the prior
-    // The caller's, or NULL; 0 where not of the set.
-    double *at;         // [columns]
-    double *covariance; // [columns * columns]
 };
 
 /// Makes the columns as dig_lines_make() does. Errors of the file have their prior in every answer.
@@ -52,28 +59,29 @@ dig_fit_make(struct dig_air *air, const double file_scale[DIG_FILE_ERRORS], stru
 void dig_fit_finish(struct dig_fit *fit);
 
 /// Sums the digs with these weights (how often each counts; NULL: once) and takes s2 from what all
-/// columns with priors of these widths together leave; NULL: from what all effects do.
-void dig_fit_sum(struct dig_fit *fit, const double weight[], const double widths[]);
+/// columns together leave.
+void dig_fit_sum(struct dig_fit *fit, const double weight[]);
 
 /// Another variance of the noise in the rows' sigmas than that.
 void dig_fit_set_noise(struct dig_fit *fit, double s2);
 
-/// Solves for the effects of the set, a bit each of enum dig_effect_id; the evidence is against no
-/// effect. A bent column stays where the lines have it.
-void dig_fit_solve(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
+/// Solves for the set; the evidence is against the empty one. A bent column stays where the lines
+/// have it.
+struct dig_fit_answer dig_fit_solve(const struct dig_fit *fit, unsigned set,
+                                    enum dig_fit_leave leave);
 
 /// The same with priors as wide as the parameters' scales. A prior counts the more, the less the
 /// air shows of a parameter.
-void dig_fit_solve_wide(const struct dig_fit *fit, unsigned set, struct dig_fit_answer *answer);
+struct dig_fit_answer dig_fit_solve_wide(const struct dig_fit *fit, unsigned set,
+                                         enum dig_fit_leave leave);
 
-/// The same width for all columns of a set; of what the file may have wrong, its tolerance; 0 for
-/// all others.
+/// The widths of all columns' priors, of a set of this width.
 void dig_fit_widths(const struct dig_fit *fit, unsigned set, double wide, double widths[]);
 
 /// Every column with a prior of its own width, in scales; 0: it stays absent. The evidence is that
-/// of these priors, without a choice of widths; answer->width is 1.
-void dig_fit_solve_each(const struct dig_fit *fit, const double widths[],
-                        struct dig_fit_answer *answer);
+/// of these priors, without a choice of widths; the answer's width is 1.
+struct dig_fit_answer dig_fit_solve_each(const struct dig_fit *fit, const double widths[],
+                                         enum dig_fit_leave leave);
 
 /// The log evidence of a set alone.
 double dig_fit_evidence(const struct dig_fit *fit, unsigned set);

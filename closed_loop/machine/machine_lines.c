@@ -78,15 +78,17 @@ enum dig_status dig_lines_make(struct dig_air *const air, const double file_scal
     number_digs(lines);
     const size_t n    = lines->columns;
     const size_t one  = n * n + n;
-    lines->trust      = malloc((air->rows + 1) * sizeof *lines->trust);
-    lines->work       = malloc((3 + n) * (air->rows + 1) * sizeof *lines->work);
+    const size_t rows = air->rows + 1;
+    lines->normals    = malloc((lines->digs * one + n * n + (6 + 3 * n) * rows) * sizeof(double));
     lines->correction = malloc((air->segments + 1) * sizeof *lines->correction);
-    lines->normals    = malloc((lines->digs + 1) * one * sizeof *lines->normals);
-    if (lines->trust == NULL || lines->work == NULL || lines->correction == NULL ||
-        lines->normals == NULL) {
+    lines->joint_row  = malloc(rows * sizeof *lines->joint_row);
+    if (lines->normals == NULL || lines->correction == NULL || lines->joint_row == NULL) {
         dig_lines_finish(lines);
         return DIG_ENOMEM;
     }
+    lines->trust = lines->normals + lines->digs * one;
+    lines->work  = lines->trust + rows;
+    lines->joint = lines->work + (3 + n) * rows;
     for (size_t d = 0; d < lines->digs; d++) {
         lines->normal[d].slope2     = lines->normals + d * one;
         lines->normal[d].slope_rest = lines->normal[d].slope2 + n * n;
@@ -101,9 +103,8 @@ void dig_lines_finish(struct dig_lines *const lines)
 {
     if (lines != NULL) {
         free(lines->normals);
-        free(lines->trust);
-        free(lines->work);
         free(lines->correction);
+        free(lines->joint_row);
         *lines = (struct dig_lines){ .columns = 0 };
     }
 }

@@ -21,6 +21,9 @@
 /// effect of the catalogue: DIG_EFFECT_UNLISTED.
 #define DIG_LINES_OF_FILE (1U << DIG_EFFECT_UNLISTED)
 
+/// Everything that has columns.
+#define DIG_LINES_ALL (DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE)
+
 #define DIG_LINES_COLUMNS_MAX                                                                      \
     ((size_t)DIG_MACHINE_EFFECTS * DIG_MODEL_PARAMETERS_MAX + DIG_LINES_SEGMENTS_MAX +             \
      DIG_FILE_ERRORS)
@@ -55,6 +58,8 @@ struct dig_lines {
     double                 *trust;      // [rows] what each row's rest and slopes are multiplied by
     double                 *work;       // [3 + columns][rows]; see dig_lines_update()
     struct dig_correction  *correction; // [segments]; the same
+    double                 *joint;      // room for the rows of a joint: machine_noise.c
+    size_t                 *joint_row;
 };
 
 /// Writes a bucket's payload: the common one of these values, if it carries that, and one of its

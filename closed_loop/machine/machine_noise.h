@@ -19,12 +19,12 @@ struct dig_machine_noise {
 /// Estimates it, with the effects' slopes at these values. It counts for a joint where both the air
 /// before digs and the air after them are likelier with it, and where the rows it leaves are not
 /// correlated from block to block: a ripple of seconds is no noise. A dig without air gets the mean
-/// of the digs. DIG_ENOMEM. Some tenths of a second.
-DIG_MUST_CHECK enum dig_status dig_machine_noise_tell(struct dig_lines *lines, const double at[],
-                                                      struct dig_machine_noise *noise);
+/// of the digs. Some tenths of a second.
+void dig_machine_noise_tell(struct dig_lines *lines, const double at[],
+                            struct dig_machine_noise *noise);
 
-/// Estimates it and raises the sigma of every row to what the noise leaves of a mean of many rows,
-/// as effects are slower than it. True: any sigma has grown.
-bool dig_machine_noise_widen(struct dig_lines *lines, const double at[]);
+/// Raises the sigma of every row to what the noise leaves of a mean of many rows, as effects are
+/// slower than it. True: any sigma has grown.
+bool dig_machine_noise_widen(const struct dig_machine_noise *noise, struct dig_air *air);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_NOISE_H

@@ -2,18 +2,18 @@
 // explain them.
 
 #include "closed_loop/machine/machine_search.h"
-#include "closed_loop/machine/machine_noise.h"
-#include "closed_loop/machine/machine_slew.h"
 #include "core/chance.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { BOOTSTRAPS = 200 };
 
-static void search_finish(struct dig_machine_search *const s)
+void dig_machine_search_finish(struct dig_machine_search *const s)
 {
+    free(s->all.row);
     dig_fit_finish(&s->fit);
     dig_air_finish(&s->air);
 }
@@ -35,41 +35,35 @@ static void tolerance_of(const struct dig_air *const air, double scale[DIG_FILE_
     }
 }
 
-static enum dig_status search_make(const struct dig_machine_side *const side,
-                                   struct dig_machine_search *const     s)
+// Begins with the air of the digs to trace in, once: its noise is asked for first, then its
+// effects.
+static enum dig_status begin(struct dig_machine_side *const side)
 {
-    const enum dig_status status =
+    struct dig_machine_search *const s = &side->search;
+    double                           scale[DIG_FILE_ERRORS];
+    if (side->begun) {
+        return DIG_OK;
+    }
+    *s = (struct dig_machine_search){ .set = 0 };
+    enum dig_status status =
         dig_air_make(&side->machine, side->digs, side->dig, side->used, &s->air);
-    double scale[DIG_FILE_ERRORS];
-    if (status != DIG_OK) {
-        return status;
+    if (status == DIG_OK) {
+        tolerance_of(&s->air, scale);
+        status = dig_fit_make(&s->air, scale, &s->fit);
     }
-    tolerance_of(&s->air, scale);
-    return dig_fit_make(&s->air, scale, &s->fit);
-}
-
-// Noise of the air but for what slewing pulls. Where there is no air, none.
-static enum dig_status tell_noise(const struct dig_machine_side *const side,
-                                  struct dig_machine_noise *const      noise)
-{
-    enum { ROUNDS = 6 };
-    static const unsigned     all    = DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE;
-    struct dig_machine_search s      = { .set = 0 };
-    struct dig_fit_answer     answer = { .at = s.fit.at };
-    enum dig_status           status = search_make(side, &s);
-    bool                      slews  = status == DIG_OK && s.air.rows > 0;
-    *noise                           = (struct dig_machine_noise){ .memory_s = 0.0 };
-    for (int round = 0; round < ROUNDS && slews; round++) {
-        dig_lines_update(&s.fit.lines, all);
-        dig_fit_sum(&s.fit, NULL, NULL);
-        dig_fit_solve(&s.fit, DIG_MACHINE_ALL_EFFECTS, &answer);
-        slews = dig_slew_leave_out(&s.fit.lines, s.fit.at, DIG_SLEW_LONG);
+    const size_t rows = s->air.rows;
+    s->all.row        = status == DIG_OK ? malloc(2 * (rows + 1) * sizeof *s->all.row) : NULL;
+    if (s->all.row == NULL) {
+        dig_machine_search_finish(s);
+        return DIG_ENOMEM;
     }
-    if (status == DIG_OK && s.air.rows > 0) {
-        status = dig_machine_noise_tell(&s.fit.lines, s.fit.at, noise);
+    s->kept.row = s->all.row + rows + 1;
+    dig_slew_rows_save(&s->air, &s->all);
+    if (rows > 0) {
+        dig_machine_begin(s);
     }
-    search_finish(&s);
-    return status;
+    side->begun = true;
+    return DIG_OK;
 }
 
 // What a drive's push that is off by so much does to a dig: rms of each channel, squared.
@@ -117,14 +111,14 @@ static enum dig_status lasting_of(const struct dig_machine_side *const  side,
     return status == DIG_ENOMATCH ? DIG_OK : status; // a drive at its stop: not told
 }
 
-enum dig_status dig_machine_side_tell_noise(const struct dig_machine_side *const side,
-                                            struct dig_measured                  measured[])
+enum dig_status dig_machine_side_tell_noise(struct dig_machine_side *const side,
+                                            struct dig_measured            measured[])
 {
     assert(side != NULL && (side->digs == 0 || measured != NULL));
-    struct dig_machine_noise noise;
-    enum dig_status          status = tell_noise(side, &noise);
-    for (size_t d = 0; d < side->digs && status == DIG_OK && noise.memory_s > 0.0; d++) {
-        status = lasting_of(side, &noise, d, &measured[d]);
+    const struct dig_machine_noise *const noise  = &side->search.noise;
+    enum dig_status                       status = begin(side);
+    for (size_t d = 0; d < side->digs && status == DIG_OK && noise->memory_s > 0.0; d++) {
+        status = lasting_of(side, noise, d, &measured[d]);
     }
     return status;
 }
@@ -139,13 +133,13 @@ static void bootstrap(struct dig_machine_search *const s, uint64_t seed,
         for (size_t d = 0; d < s->fit.lines.digs; d++) {
             weight[dig_chance_index(&seed, s->fit.lines.digs)] += 1.0;
         }
-        dig_fit_sum(&s->fit, weight, NULL);
+        dig_fit_sum(&s->fit, weight);
         const unsigned set = dig_fit_select(&s->fit, s->least, 0);
         for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
             inclusion[e] += (double)((set >> e) & 1U) / BOOTSTRAPS;
         }
     }
-    dig_fit_sum(&s->fit, NULL, NULL);
+    dig_fit_sum(&s->fit, NULL);
 }
 
 // The log evidence of the set and of what the file has wrong, against a machine as filed: of what
@@ -163,9 +157,8 @@ static void write_candidates(struct dig_machine_search *const s, const double in
 {
     finding->candidates = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
-        size_t                to     = finding->candidates++;
-        dig_fit_solve(&s->fit, 1U << e, &answer);
+        const struct dig_fit_answer answer = dig_fit_solve(&s->fit, 1U << e, DIG_FIT_COVARIANCE);
+        size_t                      to     = finding->candidates++;
         for (; to > 0 && finding->candidate[to - 1].log_evidence < answer.log_evidence; to--) {
             finding->candidate[to] = finding->candidate[to - 1];
         }
@@ -182,8 +175,7 @@ static void write_candidates(struct dig_machine_search *const s, const double in
 static void write_effects(struct dig_machine_search *const s, const double inclusion[],
                           struct dig_machine_finding *const finding)
 {
-    struct dig_fit_answer answer = { .at = s->fit.at, .covariance = s->fit.covariance };
-    dig_fit_solve(&s->fit, s->set, &answer);
+    (void)dig_fit_solve(&s->fit, s->set, DIG_FIT_COVARIANCE);
     memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
     finding->effects = 0;
     for (int e = 0; e < DIG_MACHINE_EFFECTS; e++) {
@@ -203,11 +195,10 @@ static void write_effects(struct dig_machine_search *const s, const double inclu
 static void write_own_payload(struct dig_machine_search *const s, double own_kg[DIG_MEASURED_MAX])
 {
     static const unsigned carries = 1U << DIG_EFFECT_PAYLOAD;
-    struct dig_fit_answer alone   = { .at = s->fit.at };
     if ((s->set & carries) != 0) {
         memcpy(s->fit.at, s->fit.lines.at, s->fit.lines.columns * sizeof(double));
     } else {
-        dig_fit_solve(&s->fit, carries, &alone);
+        (void)dig_fit_solve(&s->fit, carries, DIG_FIT_VALUES);
     }
     for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
         own_kg[d] = 0.0;
@@ -338,22 +329,25 @@ enum dig_status dig_machine_side_trace(struct dig_machine_side *const side,
                                        struct dig_machine_finding *const finding)
 {
     assert(side != NULL && finding != NULL && false_alarm > 0.0);
-    struct dig_machine_search s      = { .level = false_alarm,
-                                         .least = log(DIG_MACHINE_EFFECTS / false_alarm) };
-    enum dig_status           status = search_make(side, &s);
-    if (status == DIG_OK && s.air.rows == 0) {
+    struct dig_machine_search *const s      = &side->search;
+    const enum dig_status            status = begin(side);
+    if (status != DIG_OK) {
+        return status;
+    }
+    s->level = false_alarm;
+    s->least = log(DIG_MACHINE_EFFECTS / false_alarm);
+    if (s->air.rows > 0) {
+        dig_machine_select(s);
+        write_finding(s, seed, side->own_payload_kg, finding);
+    } else {
         *finding = (struct dig_machine_finding){ .p_complete   = 1.0,
                                                  .no_air       = true,
                                                  .residual_air = (double)NAN };
         for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
             finding->residual_air_of[d] = (double)NAN;
         }
-    } else if (status == DIG_OK) {
-        status = dig_machine_select(&s);
-        if (status == DIG_OK) {
-            write_finding(&s, seed, side->own_payload_kg, finding);
-        }
     }
-    search_finish(&s);
-    return status;
+    dig_machine_search_finish(s);
+    side->begun = false;
+    return DIG_OK;
 }

@@ -6,18 +6,11 @@
 
 #include "closed_loop/machine/machine_drift.h"
 #include "closed_loop/machine/machine_fit.h"
+#include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_side.h"
+#include "closed_loop/machine/machine_slew.h"
 #include "closed_loop/machine/machine_unlike.h"
 #include "closed_loop/machine_digs/machine_dig.h"
-
-struct dig_machine_side {
-    struct dig_machine          machine;
-    const struct dig_curve_set *set;
-    size_t                      digs;
-    struct dig_machine_dig      dig[DIG_MEASURED_MAX];
-    bool                        used[DIG_MEASURED_MAX];           // to trace in
-    double                      own_payload_kg[DIG_MEASURED_MAX]; // beyond the digs' common one
-};
 
 /// Air whose residual is more than this many times a row's variance is unexplained.
 #define DIG_MACHINE_UNCLEAR_REST2 1.2
@@ -28,6 +21,8 @@ struct dig_machine_side {
 struct dig_machine_search {
     struct dig_air           air;
     struct dig_fit           fit;
+    struct dig_slew_rows     all, kept; // rows of the air: all; and as the search had come to them
+    struct dig_machine_noise noise;
     unsigned                 set;
     double                   noise2;     // variance that rows may have without being unclear
     double                   level;      // false alarms
@@ -40,9 +35,24 @@ struct dig_machine_search {
     struct dig_machine_unlike unlike;                   // what of the file does, or none
 };
 
-/// Chooses the set that explains the air, beginning without effects, and leaves out rows in which
-/// the machine slewed. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status dig_machine_select(struct dig_machine_search *s);
+struct dig_machine_side {
+    struct dig_machine          machine;
+    const struct dig_curve_set *set;
+    size_t                      digs;
+    struct dig_machine_dig      dig[DIG_MEASURED_MAX];
+    bool                        used[DIG_MEASURED_MAX];           // to trace in
+    double                      own_payload_kg[DIG_MEASURED_MAX]; // beyond the digs' common one
+    bool                        begun;
+    struct dig_machine_search   search; // in what was begun
+};
+
+/// Leaves out rows in which the machine slewed, and tells the noise of the others.
+void dig_machine_begin(struct dig_machine_search *s);
+
+/// Chooses the set that explains the air so begun, beginning without effects.
+void dig_machine_select(struct dig_machine_search *s);
+
+void dig_machine_search_finish(struct dig_machine_search *s);
 
 /// Whether the rows' residual is more than their noise, or the set is makeshift: more than
 /// DIG_MACHINE_AT_ONCE effects, or a negative payload.

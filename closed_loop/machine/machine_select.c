@@ -1,16 +1,10 @@
 // Effects join one after the other, and after each the equations are made linear again where it has
 // led.
 
-#include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_search.h"
-#include "closed_loop/machine/machine_slew.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-// Everything that has columns.
-static const unsigned all_columns = DIG_MACHINE_ALL_EFFECTS | DIG_LINES_OF_FILE;
 
 enum { REFINEMENTS = 8, ROUNDS = 6 };
 
@@ -24,8 +18,16 @@ static const double own_noise = 1.4;
 
 static void make_linear(struct dig_machine_search *const s)
 {
-    dig_lines_update(&s->fit.lines, all_columns);
-    dig_fit_sum(&s->fit, NULL, NULL);
+    dig_lines_update(&s->fit.lines, DIG_LINES_ALL);
+    dig_fit_sum(&s->fit, NULL);
+}
+
+// Rows are trusted as they may be where the lines stand, and are made linear there.
+static void stand(struct dig_machine_search *const s)
+{
+    s->slow  = dig_lines_judge(&s->fit.lines);
+    s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
+    make_linear(s);
 }
 
 // Gauss-Newton of the set's parameters from where they are; steps that do not help are halved.
@@ -33,43 +35,40 @@ static void refine(struct dig_machine_search *const s)
 {
     for (int i = 0; i < REFINEMENTS; i++) {
         const double s2 = s->fit.s2;
+        double       widths[DIG_LINES_COLUMNS_MAX];
         dig_lines_update(&s->fit.lines, s->set | DIG_LINES_OF_FILE);
-        dig_fit_sum(&s->fit, NULL, NULL);
+        dig_fit_sum(&s->fit, NULL);
         dig_fit_set_noise(&s->fit, s2); // of all effects together, which these are not
-        struct dig_fit_answer answer = { .at = s->fit.at };
-        double                widths[DIG_LINES_COLUMNS_MAX];
-        dig_fit_solve(&s->fit, s->set, &answer);
-        for (size_t c = 0; c < s->fit.lines.columns; c++) {
-            // Of those that have left the set, too.
-            widths[c] = s->fit.lines.column[c].effect == DIG_EFFECT_UNLISTED ? 1.0 : answer.width;
-        }
-        if (dig_fit_step(&s->fit, widths) * answer.width < 0.005) {
+        const double wide = dig_fit_solve(&s->fit, s->set, DIG_FIT_VALUES).width;
+        dig_fit_widths(&s->fit, ~0U, wide, widths); // of those that have left the set, too
+        if (dig_fit_step(&s->fit, widths) * wide < 0.005) {
             break;
         }
     }
-    s->slow  = dig_lines_judge(&s->fit.lines);
-    s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    make_linear(s);
+    stand(s);
 }
 
 // Leaves out what slewing pulls, or the ground, beside all effects as the trusted rows have them.
 static bool leave_out(struct dig_machine_search *const s, const enum dig_slew which)
 {
-    struct dig_fit_answer all = { .at = s->fit.at };
     make_linear(s);
-    dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, &all);
+    (void)dig_fit_solve(&s->fit, DIG_MACHINE_ALL_EFFECTS, DIG_FIT_VALUES);
     return dig_slew_leave_out(&s->fit.lines, s->fit.at, which);
 }
 
-// The equations without any effect and without what slewing pulls, rows as far as their own scatter
-// lets them be known.
-static void begin(struct dig_machine_search *const s)
+void dig_machine_begin(struct dig_machine_search *const s)
 {
     for (int round = 0; round < ROUNDS && leave_out(s, DIG_SLEW_LONG); round++) {
     }
-    s->noise2 = 1.0;
-    if (dig_machine_noise_widen(&s->fit.lines, s->fit.at)) {
-        s->noise2 = own_noise;
+    dig_machine_noise_tell(&s->fit.lines, s->fit.at, &s->noise);
+}
+
+// The equations without any effect, rows as far as their own scatter lets them be known.
+static void settle(struct dig_machine_search *const s)
+{
+    const bool widened = dig_machine_noise_widen(&s->noise, &s->air);
+    s->noise2          = widened ? own_noise : 1.0;
+    if (widened) {
         make_linear(s);
     }
     // Only beyond that noise a block tells of the ground.
@@ -177,9 +176,7 @@ static void join(struct dig_machine_search *const s, const unsigned first)
 static void begin_again(struct dig_machine_search *const s)
 {
     memset(s->fit.lines.at, 0, s->fit.lines.columns * sizeof(double));
-    s->slow  = dig_lines_judge(&s->fit.lines);
-    s->rest2 = s->rest2_none;
-    make_linear(s);
+    stand(s);
 }
 
 // The one of the set that explains most alone.
@@ -209,13 +206,11 @@ struct reached {
 // effects must bring.
 static double merit_of(const struct dig_machine_search *const s)
 {
-    struct dig_fit_answer answer = { .at = NULL };
-    double                trust  = 0.0;
-    dig_fit_solve(&s->fit, s->set, &answer);
+    double trust = 0.0;
     for (size_t r = 0; r < s->air.rows; r++) {
         trust += log(s->fit.lines.trust[r]);
     }
-    return answer.log_evidence + s->fit.log_none - 0.5 * s->fit.rest2 / s->fit.s2 -
+    return dig_fit_evidence(&s->fit, s->set) + s->fit.log_none - 0.5 * s->fit.rest2 / s->fit.s2 -
            0.5 * (double)s->air.rows * log(s->fit.s2) + trust - s->least * effects_of(s);
 }
 
@@ -241,14 +236,12 @@ static void try_with(struct dig_machine_search *const s, const unsigned first,
     }
     s->set = best->set;
     memcpy(s->fit.lines.at, best->at, sizeof best->at);
-    s->slow  = dig_lines_judge(&s->fit.lines);
-    s->rest2 = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    make_linear(s);
+    stand(s);
 }
 
 static void select_effects(struct dig_machine_search *const s)
 {
-    begin(s);
+    settle(s);
     rest_by_dig(s);
     s->rest2_none        = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
     s->rest2             = s->rest2_none;
@@ -290,45 +283,30 @@ static void trust_all(struct dig_machine_search *const s)
     }
 }
 
-// What was found before, where it stood.
-static void return_to(const struct dig_machine_search *const found,
-                      const struct dig_slew_rows *const rows, struct dig_machine_search *const s)
-{
-    *s = *found;
-    dig_slew_rows_restore(rows, &s->air);
-    (void)dig_lines_judge(&s->fit.lines);
-    make_linear(s);
-}
-
 // All effects together may take what slewing pulls for their own, where it goes with the same
 // motion in every dig. Where air is not understood, what slewing would be beside the effects of the
 // air before digs alone, or of that after, is left out - if the rest is understood then. An effect
 // that explains all air is believed: what it pulls may look like slewing to half of the air.
-enum dig_status dig_machine_select(struct dig_machine_search *const s)
+void dig_machine_select(struct dig_machine_search *const s)
 {
-    struct dig_slew_rows all    = { .row = NULL };
-    struct dig_slew_rows kept   = { .row = NULL };
-    enum dig_status      status = dig_slew_rows_save(&s->air, &all);
-    if (status == DIG_OK) {
-        select_effects(s);
-        status = dig_slew_rows_save(&s->air, &kept);
-    }
+    select_effects(s);
+    dig_slew_rows_save(&s->air, &s->kept);
     const struct dig_machine_search found = *s;
     bool                            clear = !dig_machine_is_unclear(s);
-    const bool                      asked = status == DIG_OK && !clear;
-    for (int after = 0; after < 2 && asked && !clear; after++) {
-        dig_slew_rows_restore(&all, &s->air);
+    const bool                      asked = !clear;
+    for (int after = 0; after < 2 && !clear; after++) {
+        dig_slew_rows_restore(&s->all, &s->air);
         trust_only(s, after > 0);
         if (leave_out(s, DIG_SLEW_LONG)) {
             trust_all(s);
+            dig_machine_begin(s);
             select_effects(s);
             clear = !dig_machine_is_unclear(s);
         }
     }
     if (asked && !clear) {
-        return_to(&found, &kept, s);
+        *s = found;
+        dig_slew_rows_restore(&s->kept, &s->air);
+        stand(s);
     }
-    free(all.row);
-    free(kept.row);
-    return status;
 }

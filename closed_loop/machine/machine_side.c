@@ -86,6 +86,9 @@ void dig_machine_side_destroy(struct dig_machine_side *const side)
     for (size_t d = 0; d < side->digs; d++) {
         dig_machine_dig_finish(&side->dig[d]);
     }
+    if (side->begun) {
+        dig_machine_search_finish(&side->search);
+    }
     free(side);
 }
 

@@ -100,8 +100,8 @@ DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *s
 
 /// Leaves in measured[].lasting what noise that free air shows to last (machine_noise.h) does to
 /// each dig; nothing where it shows none. DIG_ENOMEM. Some tenths of a second.
-DIG_MUST_CHECK enum dig_status dig_machine_side_tell_noise(const struct dig_machine_side *side,
-                                                           struct dig_measured measured[]);
+DIG_MUST_CHECK enum dig_status dig_machine_side_tell_noise(struct dig_machine_side *side,
+                                                           struct dig_measured      measured[]);
 
 /// Which digs effects are applied to, and how carefully: ROUGHLY, to those fitted to, for
 /// differences of two such.

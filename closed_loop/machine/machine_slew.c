@@ -6,7 +6,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // So many blocks make a second; it sets in and dies away within so many more, which go with them.
@@ -196,21 +195,14 @@ bool dig_slew_leave_out(struct dig_lines *const lines, const double at[], const 
     return true;
 }
 
-enum dig_status dig_slew_rows_save(const struct dig_air *const air,
-                                   struct dig_slew_rows *const rows)
+void dig_slew_rows_save(const struct dig_air *const air, struct dig_slew_rows *const rows)
 {
     assert(air != NULL && rows != NULL);
-    struct dig_air_row *const row = malloc((air->rows + 1) * sizeof *row);
-    if (row == NULL) {
-        return DIG_ENOMEM;
-    }
-    memcpy(row, air->row, air->rows * sizeof *row);
-    rows->row  = row;
+    memcpy(rows->row, air->row, air->rows * sizeof *rows->row);
     rows->rows = air->rows;
     for (size_t s = 0; s < air->segments; s++) {
         rows->of[s] = air->segment[s].rows;
     }
-    return DIG_OK;
 }
 
 void dig_slew_rows_restore(const struct dig_slew_rows *const rows, struct dig_air *const air)

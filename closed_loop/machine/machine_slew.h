@@ -7,7 +7,6 @@
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SLEW_H
 
 #include "closed_loop/machine/machine_lines.h"
-#include "core/status.h"
 
 #include <stdbool.h>
 
@@ -21,16 +20,14 @@ enum dig_slew { DIG_SLEW_LONG, DIG_SLEW_TOUCHES };
 /// then to be explained anew. Of air that is mostly such nothing is taken out.
 bool dig_slew_leave_out(struct dig_lines *lines, const double at[], enum dig_slew which);
 
-/// The rows that air has, to go back to. Free row.
+/// The rows that air has, to go back to, in room for as many.
 struct dig_slew_rows {
     struct dig_air_row *row;
     size_t              rows;
     size_t              of[DIG_LINES_SEGMENTS_MAX]; // how many each segment has
 };
 
-DIG_MUST_CHECK enum dig_status dig_slew_rows_save(const struct dig_air *air,
-                                                  struct dig_slew_rows *rows);
-
+void dig_slew_rows_save(const struct dig_air *air, struct dig_slew_rows *rows);
 void dig_slew_rows_restore(const struct dig_slew_rows *rows, struct dig_air *air);
 
 #endif // DIG_CLOSED_LOOP_MACHINE_MACHINE_SLEW_H

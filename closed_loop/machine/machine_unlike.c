@@ -15,21 +15,18 @@ struct dig_machine_unlike dig_machine_unlike_ask(const struct dig_fit *const fit
     const size_t              n      = fit->lines.columns;
     struct dig_machine_unlike unlike = { .is = false };
     double                    widths[DIG_LINES_COLUMNS_MAX];
-    double                    at[DIG_LINES_COLUMNS_MAX];
     double                    most2  = 0.0;
     double                    errors = 0.0;
-    struct dig_fit_answer     filed  = { .at = at, .covariance = fit->covariance };
-    struct dig_fit_answer     wide   = { .at = NULL };
     dig_fit_widths(fit, 0, 0.0, widths);
-    dig_fit_solve_each(fit, widths, &filed);
+    (void)dig_fit_solve_each(fit, widths, DIG_FIT_COVARIANCE);
     for (size_t c = 0; c < n; c++) {
         const double told = 1.0 - fit->covariance[(n + 1) * c];
         if (fit->lines.column[c].effect != DIG_EFFECT_UNLISTED || !(told > least_told)) {
             continue;
         }
         errors += 1.0;
-        if (at[c] * at[c] / told > most2) {
-            most2         = at[c] * at[c] / told;
+        if (fit->at[c] * fit->at[c] / told > most2) {
+            most2         = fit->at[c] * fit->at[c] / told;
             unlike.column = c;
         }
     }
@@ -38,8 +35,8 @@ struct dig_machine_unlike dig_machine_unlike_ask(const struct dig_fit *const fit
     unlike.is = errors > 0.0 && unlike.p < level;
     if (unlike.is) {
         widths[unlike.column] = DIG_UNLIKE_WIDTH;
-        dig_fit_solve_each(fit, widths, &wide);
-        unlike.log_evidence = wide.log_evidence - log(errors);
+        unlike.log_evidence =
+            dig_fit_solve_each(fit, widths, DIG_FIT_NOTHING).log_evidence - log(errors);
     }
     return unlike;
 }

@@ -17,11 +17,15 @@ static struct dig_machine_unlike ask(const double z[ERRORS], const double shown,
 {
     static struct dig_fit fit;
     static double         slope2[ERRORS * ERRORS], work[ERRORS * ERRORS], cov[ERRORS * ERRORS];
+    static double         at[ERRORS];
     memset(slope2, 0, sizeof slope2);
-    fit = (struct dig_fit){ .slope2 = slope2, .work = work, .covariance = cov, .s2 = 1.0 };
+    fit =
+        (struct dig_fit){ .slope2 = slope2, .work = work, .at = at, .covariance = cov, .s2 = 1.0 };
     fit.lines.columns = ERRORS;
     for (int c = 0; c < ERRORS; c++) {
         fit.lines.column[c].effect = DIG_EFFECT_UNLISTED;
+        fit.of[c]                  = -1;
+        fit.base[c]                = 1.0;
     }
     for (int r = 0; r < ROWS; r++) {
         const double slope[ERRORS] = { 1.0, 2.0 * sin(r), shown * cos(2.0 * r) };
