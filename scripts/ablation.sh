@@ -36,7 +36,7 @@ size does not halve a probability|closed_loop/verdict/trace_work.h|s/UNCONFIRMED
 every correction is made|closed_loop/verdict/trace.c|s/most_chance_of_worse = 0.2/most_chance_of_worse = 1.0/|88
 every trajectory is corrected|closed_loop/search/unlisted.c|s/!(gain_of(batch, left, by\[g\], g) > 0.0)/false/|35
 what has no name is corrected whole|closed_loop/search/unlisted.c|s/by\[g\] = credible(batch, fitted, g)/by[g] = 1.0/|20
-repeats count as beds|closed_loop/fit/same_bed.c|s/return beds;/return batch->group[group].digs;/|54
+repeats count as beds|closed_loop/fit/whitened_digs.c|s/return beds;/return batch->group[group].digs;/|54
 codes agree (.01: 0)|closed_loop/fit/likelihood.c|s/of_codes *= 0.01;/of_codes = 0.0;/|2
 codes differ smoothly alone (.01: 0)|closed_loop/fit/likelihood.c|s/rough = 0.01/rough = 0.0/|1
 what has no name changes slowly alone (.5: 0)|closed_loop/fit/likelihood.c|s/quick = 0.5/quick = 0.0/|3

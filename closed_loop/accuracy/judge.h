@@ -1,5 +1,6 @@
 // Error of predicted curves against measured digs (docs/numerics.md), its interval and its noise
-// floor.
+// floor; and whether to apply a correction: one that is small beside the scatter of one dig makes
+// the next dig's error worse nearly as often as better, even where it is right.
 
 #ifndef DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
 #define DIG_CLOSED_LOOP_ACCURACY_JUDGE_H
@@ -53,5 +54,15 @@ struct dig_error_range dig_judge_error(const struct dig_judged *judged, const bo
 
 /// 1 sigma of what the error after would be of a complete model.
 double dig_judge_floor(const struct dig_judged *judged, const bool take[]);
+
+/// Chance, 0 … 1, that the curves after are farther from the next dig than those before, if they
+/// are exactly its mean: averaged over these digs. A correction d of the moment makes a dig that
+/// scatters by e worse where 2 <d, e> < -<d, d>, products over rig time. e is normal, as large as
+/// the curves' before.sd and correlated from bin to bin as the scatter is. 1/2 where d is 0.
+double dig_decision_chance_of_worse(const struct dig_judged  *judged,
+                                    const struct dig_scatter *scatter);
+
+/// Whether the moment's error (docs/numerics.md) after is below that before, over the fitted digs.
+bool dig_decision_brings_nearer(const struct dig_judged *judged, const bool fit[]);
 
 #endif // DIG_CLOSED_LOOP_ACCURACY_JUDGE_H

@@ -1,7 +1,6 @@
 #include "closed_loop/air/machine_air.h"
 
-#include "closed_loop/air/machine_stand.h"
-#include "closed_loop/air/machine_turn.h"
+#include "closed_loop/air/row_sigma.h"
 #include "core/linkage.h"
 #include "estimator/wrench/balance.h"
 #include "estimator/wrench/dynamics.h"

@@ -36,7 +36,7 @@ struct dig_air_row {
     size_t         segment;
     enum dig_joint joint;
     size_t         first, points; // its points
-    double         sigma_N;       // 1 sigma of the sensors; machine_stand.h, machine_noise.h
+    double         sigma_N;       // 1 sigma of the sensors; row_sigma.h, machine_noise.h
     double         alone;         // of that what it scatters by; less than 1 where noise lasts
 };
 

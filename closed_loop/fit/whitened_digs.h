@@ -27,7 +27,8 @@ struct dig_whitened_digs_group {
     // variance, and 1 sigma.
     double lasting[DIG_FEATURE_BINS * DIG_FEATURE_BINS];
     double lasting_sigma[DIG_FORCE_CHANNELS];
-    double repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: same_bed.h
+    double
+        repeats; // variance of the mean beyond 1 / digs, as digs repeat beds: dig_same_bed_count()
     // What other approaches add to the mean was subtracted. 1 sigma of its error, units of the
     // table; and variance of the mean, as the table has few beds of them.
     double added_error[DIG_FEATURES];
@@ -93,5 +94,11 @@ double dig_whitened_digs_misfit_of_means(const struct dig_whitened_digs *batch, 
 /// one along it.
 void dig_whitened_digs_leave_out(const struct dig_whitened_digs *batch, size_t dig,
                                  struct dig_whitened_digs *others);
+
+/// Recordings of one dig in one bed, made anew by a simulation with other noise of the sensors or
+/// by a rig that replays it, are one sample of what beds of a gravel do: their mean is no nearer to
+/// the gravel's than each of them. How many beds a group's digs are of, 1 … digs. Two digs of
+/// different beds are nearer to each other than those that count as one once in a million pairs.
+size_t dig_same_bed_count(const struct dig_whitened_digs *batch, size_t group);
 
 #endif // DIG_CLOSED_LOOP_FIT_WHITENED_DIGS_H

@@ -4,12 +4,11 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SEARCH_H
 
-#include "closed_loop/machine/machine_drift.h"
+#include "closed_loop/machine/machine_doubt.h"
 #include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_noise.h"
 #include "closed_loop/machine/machine_side.h"
 #include "closed_loop/machine/machine_slew.h"
-#include "closed_loop/machine/machine_unlike.h"
 #include "closed_loop/machine_digs/machine_dig.h"
 
 /// Air whose residual is more than this many times a row's variance is unexplained.

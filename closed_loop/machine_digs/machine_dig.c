@@ -1,8 +1,7 @@
 #include "closed_loop/machine_digs/machine_dig.h"
 
 #include "closed_loop/machine_digs/free_air.h"
-#include "closed_loop/machine_digs/pose_jump.h"
-#include "closed_loop/machine_digs/pressure_check.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 #include "core/sample.h"
 #include "estimator/approach/approach_route.h"
 #include "estimator/track/frame.h"

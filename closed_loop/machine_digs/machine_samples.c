@@ -2,7 +2,7 @@
 // the pressures of the bucket's drive and of every other drive that half of the samples have.
 
 #include "closed_loop/machine_digs/machine_dig.h"
-#include "closed_loop/machine_digs/pose_jump.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 #include "core/sample.h"
 #include "estimator/track/steady.h"
 #include "estimator/wrench/cylinder.h"

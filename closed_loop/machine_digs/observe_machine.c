@@ -1,6 +1,6 @@
 #include "closed_loop/machine_digs/observe_machine.h"
 
-#include "closed_loop/machine_digs/pressure_check.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 #include "estimator/approach/approach_error.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/approach/observe_dig.h"

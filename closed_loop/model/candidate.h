@@ -15,9 +15,6 @@
 /// Where a residual shows: free air before, in the soil, lifted out.
 enum dig_part { DIG_PART_AIR, DIG_PART_SOIL, DIG_PART_LIFTED };
 
-/// "air", "soil", "lifted".
-const char *dig_part_name(enum dig_part part);
-
 /// One effect as it competed: refitted jointly with the gravel. Its probability is the share of
 /// bootstrap samples of digs in which it was chosen ("inclusion" of docs/formats/trace.md).
 struct dig_candidate {

@@ -1,7 +1,6 @@
 #include "closed_loop/model/soil.h"
 
 #include "closed_loop/model/soil_fit.h"
-#include "closed_loop/model/soil_terms.h"
 #include "estimator/effects/effect.h"
 #include "estimator/effects/template.h"
 

@@ -1,6 +1,5 @@
 #include "closed_loop/model/soil_fit.h"
 
-#include "closed_loop/model/soil_terms.h"
 #include "closed_loop/numeric/dense.h"
 #include "estimator/effects/effect.h"
 

@@ -21,4 +21,18 @@ const struct dig_soil_template *dig_soil_template_at(const struct dig_soil *soil
                                                      enum dig_effect_id effect, size_t trajectory,
                                                      double u);
 
+/// Where a bed is: how much of the effect, and how hard its gravel resists for its weight.
+struct dig_soil_at {
+    double u, strength;
+};
+
+/// Which terms such beds bear: powers, shapes, knots, terms, centre and half of the template. The
+/// first DIG_SOIL_KNOTS - 1 magnitudes that may have a hat have one.
+void dig_soil_terms_choose(size_t beds, const struct dig_soil_at at[],
+                           struct dig_soil_template *template);
+
+/// What a template's terms are multiplied by there. All are 0 at u = 0.
+void dig_soil_terms(const struct dig_soil_template *template, const struct dig_soil_at *at,
+                    double term[DIG_SOIL_TERMS]);
+
 #endif // DIG_CLOSED_LOOP_MODEL_SOIL_FIT_H

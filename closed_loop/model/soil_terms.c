@@ -1,4 +1,4 @@
-#include "closed_loop/model/soil_terms.h"
+#include "closed_loop/model/soil_fit.h"
 
 #include "core/sort.h"
 

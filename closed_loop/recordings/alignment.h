@@ -62,4 +62,8 @@ struct dig_alignment_part dig_alignment_align(const struct dig_recording        
                                               const double                       progress[],
                                               const struct dig_alignment_target *target);
 
+/// Steps, then noise, of a path whose poses themselves are read (estimator/track/steady.h), in
+/// place. number: four times as many as rows, and one. O(rows log rows).
+void dig_steady_path(struct dig_recording *recording, double tooth_m, double number[]);
+
 #endif // DIG_CLOSED_LOOP_RECORDINGS_ALIGNMENT_H

@@ -6,7 +6,6 @@
 #include "closed_loop/recordings/path_depth.h"
 #include "closed_loop/recordings/path_match.h"
 #include "closed_loop/recordings/reading_noise.h"
-#include "closed_loop/recordings/steady_path.h"
 #include "core/entry_set.h"
 #include "core/units.h"
 #include "estimator/approach/approach_response.h"

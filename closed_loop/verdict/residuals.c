@@ -6,6 +6,13 @@
 #include <math.h>
 #include <string.h>
 
+const char *dig_part_name(const enum dig_part part)
+{
+    static const char *const name[DIG_TRACE_PHASES] = { "air", "soil", "lifted" };
+    assert((size_t)part < DIG_TRACE_PHASES);
+    return name[part];
+}
+
 const char *dig_residual_channel_name(const enum dig_channel channel)
 {
     static const char *const name[DIG_FORCE_CHANNELS] = { "moment_Nm", "fx_N", "fz_N" };

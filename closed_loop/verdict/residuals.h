@@ -38,6 +38,9 @@ struct dig_residuals {
     struct dig_trend trend[DIG_FORCE_CHANNELS][DIG_REGRESSORS];
 };
 
+/// "air", "soil", "lifted".
+const char *dig_part_name(enum dig_part part);
+
 /// "moment_Nm", "fx_N", "fz_N".
 const char *dig_residual_channel_name(enum dig_channel channel);
 

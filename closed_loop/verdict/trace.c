@@ -1,6 +1,5 @@
 #include "closed_loop/verdict/trace.h"
 
-#include "closed_loop/accuracy/decision.h"
 #include "closed_loop/accuracy/effect_size.h"
 #include "closed_loop/accuracy/judge.h"
 #include "closed_loop/fit/posterior.h"

@@ -1,7 +1,7 @@
-// Tests for closed_loop/accuracy/coverage.c, and by it: that the band of a prediction holds on digs
+// Tests for closed_loop/accuracy/score.c, and by it: that the band of a prediction holds on digs
 // that took no part in the table.
 
-#include "closed_loop/accuracy/coverage.h"
+#include "closed_loop/accuracy/score.h"
 
 #include "closed_loop/recordings/observe.h"
 #include "estimator/match/match.h"

@@ -1,4 +1,4 @@
-#include "closed_loop/accuracy/decision.h"
+#include "closed_loop/accuracy/judge.h"
 
 #include "core/chance.h"
 #include "tests/made_campaign.h"

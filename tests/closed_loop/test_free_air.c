@@ -1,4 +1,4 @@
-// Tests of what stands in free air and is no effect: closed_loop/air/machine_stand.c,
+// Tests of what stands in free air and is no effect: closed_loop/air/row_sigma.c,
 // closed_loop/machine_digs/free_air.c, closed_loop/machine/machine_slew.c and machine_noise.c.
 
 #include "tests/closed_loop/machine_campaign.h"
@@ -23,7 +23,7 @@ TEST(quiet_sensors_of_a_machine_that_stands_raise_no_alarm_and_hide_no_seal)
     machine = as_filed;
 }
 
-// Steps of the angles, and noise of which a load is as full: closed_loop/recordings/steady_path.c.
+// Steps of the angles, and noise of which a load is as full: closed_loop/recordings/alignment.c.
 TEST(coarse_angles_raise_no_alarm_and_hide_no_seal)
 {
     static const double      rough_deg[][2] = { { 0.0, 0.35 }, { 0.15, 0.0 }, { 0.15, 0.5 } };

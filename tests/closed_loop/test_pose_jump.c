@@ -1,6 +1,6 @@
-// Tests for closed_loop/machine_digs/pose_jump.c
+// Tests for closed_loop/machine_digs/recording_faults.c
 
-#include "closed_loop/machine_digs/pose_jump.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 
 #include "tests/testlib.h"
 

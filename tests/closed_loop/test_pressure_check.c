@@ -1,6 +1,7 @@
-// Tests for closed_loop/machine_digs/pressure_check.c, in recordings of a simulated machine's digs.
+// Tests for closed_loop/machine_digs/recording_faults.c, in recordings of a simulated machine's
+// digs.
 
-#include "closed_loop/machine_digs/pressure_check.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 
 #include "closed_loop/machine_digs/machine_dig.h"
 #include "closed_loop/machine_digs/observe_machine.h"

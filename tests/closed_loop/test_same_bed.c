@@ -1,7 +1,7 @@
-// Tests for closed_loop/fit/same_bed.c, and what a batch and a hypothesis make of it: the made
+// Tests for closed_loop/fit/whitened_digs.c, and what a batch and a hypothesis make of it: the made
 // table's digs, some recorded again with noise of sensors.
 
-#include "closed_loop/fit/same_bed.h"
+#include "closed_loop/fit/whitened_digs.h"
 
 #include "closed_loop/fit/hypothesis.h"
 #include "tests/closed_loop/world_fixture.h"

@@ -1,6 +1,6 @@
-// Tests for closed_loop/machine_digs/saturation.c
+// Tests for closed_loop/machine_digs/recording_faults.c
 
-#include "closed_loop/machine_digs/saturation.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 
 #include "files/machine_yaml.h"
 #include "tests/model_front.h"

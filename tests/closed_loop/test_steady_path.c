@@ -1,6 +1,4 @@
-// Tests for closed_loop/recordings/steady_path.c
-
-#include "closed_loop/recordings/steady_path.h"
+// Tests for closed_loop/recordings/alignment.c
 
 #include "closed_loop/recordings/alignment.h"
 #include "core/units.h"

@@ -1,8 +1,8 @@
 // clip_margin MACHINE.yaml RECORDING.csv…: for every chamber as recorded, and cut off at nine
 // tenths and at half of its highest reading, whether it is refused and the log10 of the chance that
-// decides (closed_loop/machine_digs/saturation.h).
+// decides (closed_loop/machine_digs/recording_faults.h).
 
-#include "closed_loop/machine_digs/saturation.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 #include "files/machine_yaml.h"
 #include "files/recording_csv.h"
 

@@ -1,4 +1,3 @@
-#include "closed_loop/accuracy/coverage.h"
 #include "closed_loop/accuracy/score.h"
 #include "core/markup.h"
 #include "core/units.h"

@@ -1,6 +1,6 @@
 #include "tools/digloop/recording.h"
 
-#include "closed_loop/machine_digs/saturation.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 #include "closed_loop/recordings/observe.h"
 #include "core/sample.h"
 #include "core/text.h"

@@ -1,6 +1,6 @@
-// Tests for closed_loop/machine/machine_unlike.c
+// Tests for closed_loop/machine/machine_doubt.c
 
-#include "closed_loop/machine/machine_unlike.h"
+#include "closed_loop/machine/machine_doubt.h"
 #include "core/units.h"
 #include "tests/model_front.h"
 #include "tests/testlib.h"

@@ -1,3 +1,5 @@
+// What the rows of free air are off by beside the white noise of pressures.
+//
 // Variance of a block's mean acceleration from noise and steps of the angles. Parabolas of
 // neighbouring points share angles, so their noise is correlated: positively near each other,
 // negatively farther apart.
@@ -8,9 +10,13 @@
 // multiplies a harmonic whose phase turns by x within h by 15 j2(x) / h^2, j2 being the spherical
 // Bessel function. The mean over a block multiplies it by sin(y) / y, y being the phase in half a
 // block.
+//
+// Readings that stand. A sensor that is quiet beside its step reads one and the same number while a
+// machine stands: all readings of a pose are rounded alike, and their mean is known no better than
+// one of them. Noise of half a step spreads the rounding evenly, and the mean of many is sure.
 
-#ifndef DIG_CLOSED_LOOP_AIR_MACHINE_TURN_H
-#define DIG_CLOSED_LOOP_AIR_MACHINE_TURN_H
+#ifndef DIG_CLOSED_LOOP_AIR_ROW_SIGMA_H
+#define DIG_CLOSED_LOOP_AIR_ROW_SIGMA_H
 
 #include "closed_loop/air/machine_air.h"
 
@@ -20,4 +26,10 @@
 void dig_turn_variance(const struct dig_machine *machine, const struct dig_air_point point[],
                        size_t points, double variance[DIG_JOINTS]);
 
-#endif // DIG_CLOSED_LOOP_AIR_MACHINE_TURN_H
+/// Raises the sigma of the segment's rows in which a chamber stands, so that together they tell as
+/// much of its pressure as there are roundings: one, and one more for every step that its reading
+/// goes meanwhile. Rows whose readings change from sample to sample stay as they are.
+void dig_stand_widen(struct dig_air *air, const struct dig_air_segment *segment,
+                     const struct dig_machine_dig *dig);
+
+#endif // DIG_CLOSED_LOOP_AIR_ROW_SIGMA_H

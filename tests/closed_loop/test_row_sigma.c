@@ -1,6 +1,6 @@
-// Tests for closed_loop/air/machine_turn.c
+// Tests for closed_loop/air/row_sigma.c
 
-#include "closed_loop/air/machine_turn.h"
+#include "closed_loop/air/row_sigma.h"
 
 #include "core/chance.h"
 #include "core/units.h"

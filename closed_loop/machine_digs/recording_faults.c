@@ -1,8 +1,125 @@
-#include "closed_loop/machine_digs/saturation.h"
+#include "closed_loop/machine_digs/recording_faults.h"
 
 #include <assert.h>
 #include <math.h>
 
+// No joint of an excavator turns as fast, and no angle sensor scatters as far.
+static const double fastest_radps = 3.0;
+static const double scatter_rad   = 0.1;
+
+// From before, over the sample after it, to the next: one wrong sample changes only some of these.
+static double least_step_rad(const struct dig_sample *const before, const size_t signal)
+{
+    const double previous = before[-1].value[signal];
+    const double last     = before[0].value[signal];
+    const double first    = before[1].value[signal];
+    const double second   = before[2].value[signal];
+    return fmin(fabs(first - last), fmin(fabs(first - previous), fabs(second - last)));
+}
+
+bool dig_pose_jump_find(const size_t samples, const struct dig_sample sample[],
+                        struct dig_pose_jump *const jump)
+{
+    assert(sample != NULL && jump != NULL);
+    for (size_t i = 1; i + 2 < samples; i++) {
+        const double time_s = 1e-9 * (double)(sample[i + 2].time_ns - sample[i - 1].time_ns);
+        for (size_t s = DIG_SIGNAL_BOOM_rad; s < (size_t)DIG_SIGNAL_BOOM_rad + DIG_JOINTS; s++) {
+            if (least_step_rad(&sample[i], s) > scatter_rad + fastest_radps * time_s) {
+                *jump = (struct dig_pose_jump){ i, (enum dig_signal)s,
+                                                sample[i + 1].value[s] - sample[i].value[s] };
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Half way, by factors, from what digs of the lightest gravel reach to what kPa would read.
+static const double lowest_share = 0.01;
+
+// A relief valve opens, and holds its pressure within some tenths.
+static const double relief_share = 2.0;
+
+// Single readings may be spikes.
+static const double spikes = 0.01;
+
+struct chamber {
+    double least, most; // of relief_Pa
+    size_t readings, beyond;
+};
+
+static struct chamber read_chamber(const struct dig_machine_recording *const recording, const size_t signal,
+                           const double relief_Pa)
+{
+    struct chamber c = { INFINITY, -INFINITY, 0, 0 };
+    for (size_t i = 0; i < recording->rows; i++) {
+        if (recording->row[i].valid[signal]) {
+            const double share = recording->row[i].value[signal] / relief_Pa;
+            c.least            = fmin(c.least, share);
+            c.most             = fmax(c.most, share);
+            c.readings++;
+            c.beyond += share > relief_share ? 1 : 0;
+        }
+    }
+    return c;
+}
+
+// Two readings tell nothing.
+static bool is_dead(const struct chamber *const c)
+{
+    return c->readings > 2 && !(c->most > c->least);
+}
+
+static enum dig_status check_relief(const struct chamber *const c, const size_t signal,
+                                    struct dig_error *const error)
+{
+    return (double)c->beyond > spikes * (double)c->readings
+               ? dig_error_set(error, DIG_EINVAL,
+                               "%s reaches %.3g times what opens its relief valve, expected Pa",
+                               dig_signal_name((enum dig_signal)signal), c->most)
+               : DIG_OK;
+}
+
+static enum dig_status check_drive(const struct dig_machine_recording *const recording,
+                                   const size_t signal, const double relief_Pa, double *const most,
+                                   struct dig_error *const error)
+{
+    const struct chamber head   = read_chamber(recording, signal, relief_Pa);
+    const struct chamber rod    = read_chamber(recording, signal + 1, relief_Pa);
+    enum dig_status      status = check_relief(&head, signal, error);
+    if (status == DIG_OK) {
+        status = check_relief(&rod, signal + 1, error);
+    }
+    *most = fmax(*most, fmax(head.most, rod.most));
+    return status == DIG_OK && is_dead(&head) && is_dead(&rod)
+               ? dig_error_set(error, DIG_EINVAL,
+                               "%s and %s never change, expected what a sensor reads",
+                               dig_signal_name((enum dig_signal)signal),
+                               dig_signal_name((enum dig_signal)(signal + 1)))
+               : status;
+}
+
+enum dig_status dig_pressure_check(const struct dig_machine *const           machine,
+                                   const struct dig_machine_recording *const recording,
+                                   struct dig_error *const                   error)
+{
+    assert(machine != NULL && recording != NULL);
+    double          most   = -INFINITY; // none
+    enum dig_status status = DIG_OK;
+    for (size_t j = 0; j < DIG_JOINTS && status == DIG_OK; j++) {
+        status = check_drive(recording, DIG_SIGNAL_BOOM_HEAD_Pa + 2 * j,
+                             machine->cylinder[j].relief_Pa, &most, error);
+    }
+    if (status == DIG_OK && isfinite(most) && most < lowest_share) {
+        return dig_error_set(error, DIG_EINVAL,
+                             "pressures reach %.2g of what opens a relief valve at most, expected "
+                             "Pa, not bar or MPa",
+                             most);
+    }
+    return status;
+}
+
+// As much of a pressure at its highest value is no load that comes and goes.
 static const double least_s      = 1.0;
 static const double over_below   = 10.0; // samples at the top over samples just below it
 static const double over_back    = 3.0;
