@@ -44,7 +44,7 @@ tables                 derive export listed load merge queue scene store
 offline_dem/law        | both law law_general period rigid wall
 offline_dem/shapes     | bucket_surface clump plate_contacts rock_surface tool
 offline_dem/kernel     | cell_grid clump_body contacts crew grains kernel neighbour
-offline_dem/world      | bodies device grain_types obstacles ode_rocks ode_scene offloaded world
+offline_dem/world      | bodies device grain_types obstacles ode_scene offloaded world
 offline_dem/dig        checked_pour dig input_checks variant
 offline_dem/sweep      sweep
 offline_dem/device     engine_cuda | device_carry device_grain device_surfaces

@@ -2,8 +2,6 @@
 
 #include "offline_dem/reference/ode_bed.h"
 
-#include <assert.h>
-
 static enum dig_status reject(struct dig_error *const error, const char *const key)
 {
     return dig_error_set(error, DIG_EINVAL, "%s: expected none with the ode engine", key);
@@ -25,37 +23,10 @@ static enum dig_status check(const struct dig_scene *const scene, const char *co
     return vtk_dir != NULL ? reject(error, "pictures") : DIG_OK;
 }
 
-static enum dig_status step(struct dig_world *const w)
-{
-    struct dig_wrench     on_tool = { 0 };
-    const enum dig_status status  = dig_ode_bed_step(w->stand_in_own, w->tool, &on_tool);
-    dig_wrench_add(&on_tool, &w->sum_tool);
-    w->steps++;
-    return status;
-}
-
-// Nobody writes motions: nothing is dug before, and no grain is taken away.
-static enum dig_status sync(struct dig_world *const w, const bool all)
-{
-    assert(!all);
-    for (size_t i = 0; i < w->grains.n; i++) {
-        w->grains.motion[i] = dig_ode_bed_motion(w->stand_in_own, i);
-    }
-    return DIG_OK;
-}
-
-static void destroy(struct dig_world *const w)
-{
-    dig_ode_bed_destroy(w->stand_in_own);
-}
-
-static enum dig_status take_over(struct dig_world *const w, struct dig_error *const error)
+static enum dig_status take_over(struct dig_world *const world, struct dig_error *const error)
 {
     (void)error;
-    static const struct dig_stand_in stand_in = { step, sync, destroy };
-    w->stand_in_own                           = dig_ode_bed_create(w);
-    w->stand_in                               = w->stand_in_own != NULL ? &stand_in : NULL;
-    return w->stand_in != NULL ? DIG_OK : DIG_ENOMEM;
+    return dig_ode_bed_take_over(world);
 }
 
 static enum dig_status dig(const struct dig_stepper *const none,

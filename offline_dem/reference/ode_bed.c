@@ -1,18 +1,226 @@
 #include "offline_dem/reference/ode_bed.h"
 
-#include "offline_dem/reference/ode_contacts.h"
+#include "offline_dem/law/law_general.h"
+#include "offline_dem/reference/ode_history.h"
+#include "offline_dem/shapes/plate_contacts.h"
 #include "offline_dem/world/bodies.h"
 
+#include <assert.h>
 #include <math.h>
+#include <ode/ode.h>
 #include <stdlib.h>
-#include <string.h>
+
+// Numbers of walls, rocks and plates in the contact history, beyond any grain's.
+#define WALL_NUMBER  0xFFFF0000U
+#define ROCK_NUMBER  0xFFFF4000U
+#define PLATE_NUMBER 0xFFFF8000U
+
+struct bed {
+    struct dig_world *of; // whose grains these are
+    dWorldID          world;
+    dSpaceID          grains, walls, rocks;
+    dGeomID           tool_box;
+    dBodyID          *body; // [grains]
+    dGeomID           rock_geom[DIG_OBSTACLES_MAX];
+
+    struct dig_ode_history history;
+    double                 kick_fraction; // of a kick, in the step under way
+    bool                   out_of_memory;
+};
+
+// Which grain, wall or rock a geometry is.
+static void set_index(dGeomID geom, const size_t index)
+{
+    dGeomSetData(geom, (void *)(uintptr_t)index); // NOLINT(performance-no-int-to-ptr)
+}
+
+static size_t index_of(dGeomID geom)
+{
+    return (size_t)(uintptr_t)dGeomGetData(geom);
+}
+
+static struct dig_motion motion_of(dBodyID body)
+{
+    struct dig_motion  motion = { 0 };
+    const dReal *const x      = dBodyGetPosition(body);
+    const dReal *const v      = dBodyGetLinearVel(body);
+    const dReal *const w      = dBodyGetAngularVel(body);
+    for (int k = 0; k < 3; k++) {
+        motion.x_m[k]     = x[k];
+        motion.v_mps[k]   = v[k];
+        motion.w_radps[k] = w[k];
+    }
+    return motion;
+}
+
+// Of a grain and another, or NULL: what is at rest; d apart.
+static struct dig_kinematics between(dBodyID i, dBodyID j, const double d[3])
+{
+    const struct dig_motion a = motion_of(i);
+    const struct dig_motion b = j != NULL ? motion_of(j) : (struct dig_motion){ 0 };
+    struct dig_kinematics   t = dig_motion_between(&a, &b);
+    t.dx_m                    = d[0];
+    t.dy_m                    = d[1];
+    t.dz_m                    = d[2];
+    return t;
+}
+
+// The law's force, which acts on grain i; scaled by the fraction of a kick.
+static struct dig_contact_force push(const struct bed *const bed, const size_t i,
+                                     const struct dig_law *const        law,
+                                     const struct dig_kinematics *const t,
+                                     struct dig_contact_history *const  history)
+{
+    const struct dig_contact_force p = dig_law_apply(law, bed->of->dt_s, t, history);
+    const double                   s = bed->kick_fraction;
+    dBodyAddForce(bed->body[i], s * p.fx_N, s * p.fy_N, s * p.fz_N);
+    dBodyAddTorque(bed->body[i], s * p.ix_Nm, s * p.iy_Nm, s * p.iz_Nm);
+    return p;
+}
+
+static void add_reaction(const struct dig_contact_force *const p, const double arm_m[3],
+                         struct dig_wrench *const sum)
+{
+    const double f[3] = { p->fx_N, p->fy_N, p->fz_N };
+    const double t[3] = { p->jx_Nm, p->jy_Nm, p->jz_Nm };
+    dig_wrench_react(f, t, arm_m, sum);
+}
+
+// A grain at x_m and a rock d apart: the rock's surface moves. The arm from its centre.
+static void move_surface(const struct dig_rock *const rock, const dReal x_m[],
+                         struct dig_kinematics *const t, double arm_m[3])
+{
+    const double *const w = rock->w_radps;
+    const double *const v = rock->v_mps;
+    arm_m[0]              = x_m[0] - t->dx_m - rock->surface.x_m[0];
+    arm_m[1]              = x_m[1] - t->dy_m - rock->surface.x_m[1];
+    arm_m[2]              = x_m[2] - t->dz_m - rock->surface.x_m[2];
+    t->vx_mps -= v[0] + w[1] * arm_m[2] - w[2] * arm_m[1];
+    t->vy_mps -= v[1] + w[2] * arm_m[0] - w[0] * arm_m[2];
+    t->vz_mps -= v[2] + w[0] * arm_m[1] - w[1] * arm_m[0];
+    t->jx_radps = w[0];
+    t->jy_radps = w[1];
+    t->jz_radps = w[2];
+}
+
+// The law's i is the grain; of two the one of the lower type, as in the kernel.
+static bool comes_second(const struct bed *const bed, dGeomID a, dGeomID b)
+{
+    const uint8_t *const type_of = bed->of->grains.type_of;
+    const size_t         i       = index_of(a);
+    const size_t         j       = index_of(b);
+    return dGeomGetSpace(a) != bed->grains ||
+           (dGeomGetSpace(b) == bed->grains &&
+            (type_of[i] > type_of[j] || (type_of[i] == type_of[j] && i > j)));
+}
+
+// A grain and another, a wall or a rock, whose boxes overlap. Called back by ODE.
+static void touch(void *const data, dGeomID a, dGeomID b)
+{
+    struct bed *const              bed    = data;
+    const struct dig_grains *const g      = &bed->of->grains;
+    const bool                     second = comes_second(bed, a, b);
+    dGeomID                        first  = second ? b : a;
+    dGeomID                        other  = second ? a : b;
+    const size_t                   i      = index_of(first);
+    const size_t                   k      = index_of(other);
+    dSpaceID                       space  = dGeomGetSpace(other);
+    dBodyID                        j      = space == bed->grains ? bed->body[k] : NULL;
+    struct dig_rock *const rock = space == bed->rocks ? &bed->of->bodies->obstacles.rock[k] : NULL;
+    const struct dig_law *const law =
+        j != NULL ? &bed->of->pair_law[g->type_of[i] * DIG_GRAIN_TYPES_MAX + g->type_of[k]]
+                  : &bed->of->wall_law[g->type_of[i]];
+    dContactGeom contact;
+    if (dCollide(first, other, 1, &contact, sizeof contact) == 0) {
+        return;
+    }
+    const uint32_t number = (j != NULL      ? 0
+                             : rock != NULL ? ROCK_NUMBER
+                                            : WALL_NUMBER) +
+                            (uint32_t)k;
+    struct dig_contact_history *const history =
+        dig_ode_history_of(&bed->history, (uint32_t)i, number);
+    if (history == NULL) {
+        bed->out_of_memory = true;
+        return;
+    }
+    const double          d_m  = law->reach_m - contact.depth;
+    const double          d[3] = { d_m * contact.normal[0], d_m * contact.normal[1],
+                                   d_m * contact.normal[2] };
+    struct dig_kinematics t    = between(bed->body[i], j, d);
+    double                arm_m[3];
+    if (rock != NULL) {
+        move_surface(rock, dBodyGetPosition(bed->body[i]), &t, arm_m);
+    }
+    const struct dig_contact_force p = push(bed, i, law, &t, history);
+    if (rock != NULL) {
+        add_reaction(&p, arm_m, &rock->load);
+    }
+    if (j != NULL) {
+        const double s = bed->kick_fraction;
+        dBodyAddForce(j, -s * p.fx_N, -s * p.fy_N, -s * p.fz_N);
+        dBodyAddTorque(j, s * p.jx_Nm, s * p.jy_Nm, s * p.jz_Nm);
+    }
+}
+
+// One contact of a grain with the tool.
+static void touch_plate(const struct bed *const bed, const size_t i, const double body_m[3],
+                        const double closest_m[3], struct dig_contact_history *const history)
+{
+    struct dig_world *const w = bed->of;
+    double                  d[3];
+    double                  arm_m[3];
+    double                  v_mps[3];
+    dig_tool_separation(w->tool, body_m, closest_m, d, arm_m, v_mps);
+    struct dig_kinematics t = between(bed->body[i], NULL, d);
+    t.vx_mps -= v_mps[0];
+    t.vz_mps -= v_mps[2];
+    const struct dig_contact_force p =
+        push(bed, i, &w->tool_law[w->grains.type_of[i]], &t, history);
+    add_reaction(&p, arm_m, &w->on_tool);
+}
+
+// A grain in the box about the tool. Called back by ODE.
+static void touch_tool(void *const data, dGeomID a, dGeomID b)
+{
+    struct bed *const              bed      = data;
+    const struct dig_grains *const g        = &bed->of->grains;
+    const struct dig_tool *const   tool     = bed->of->tool;
+    const size_t                   i        = index_of(a == bed->tool_box ? b : a);
+    const double                   radius_m = g->type[g->type_of[i]].radius_m;
+    struct dig_plate_contacts      near;
+    double                         body_m[3];
+    dig_tool_to_body(tool, dBodyGetPosition(bed->body[i]), body_m);
+    near.count = 0;
+    for (size_t plate = 0; plate < tool->plates; plate++) {
+        if (!dig_plate_contacts_add(&tool->bucket, plate, body_m, radius_m, &near)) {
+            near.count--;
+            continue;
+        }
+        const struct dig_contact_history *const was =
+            dig_ode_history_previous(&bed->history, (uint32_t)i, PLATE_NUMBER + (uint32_t)plate);
+        near.history[near.count - 1] = was != NULL ? *was : (struct dig_contact_history){ 0 };
+    }
+    dig_plate_contacts_resolve(&tool->bucket, radius_m, &near);
+    for (size_t k = 0; k < near.count; k++) {
+        if (!near.touched[k]) {
+            continue;
+        }
+        touch_plate(bed, i, body_m, near.closest_m[k], &near.history[k]);
+        struct dig_contact_history *const kept =
+            dig_ode_history_of(&bed->history, (uint32_t)i, PLATE_NUMBER + (uint32_t)near.plate[k]);
+        bed->out_of_memory = bed->out_of_memory || kept == NULL;
+        if (kept != NULL) {
+            *kept = near.history[k];
+        }
+    }
+}
 
 // The box around the tool: grains whose boxes overlap it may touch the tool.
-static void place_box(const struct dig_ode_bed *const bed)
+static void place_box(const struct dig_tool *const tool, dGeomID box)
 {
-    const struct dig_tool *const tool    = bed->tool;
-    double                       low[3]  = { INFINITY, 0.0, INFINITY };
-    double                       high[3] = { -INFINITY, 0.0, -INFINITY };
+    double low[3]  = { INFINITY, 0.0, INFINITY };
+    double high[3] = { -INFINITY, 0.0, -INFINITY };
     for (size_t k = 0; k < tool->bucket.points; k++) {
         const double body[3] = { tool->bucket.x_m[k], 0.0, tool->bucket.z_m[k] };
         double       world[3];
@@ -22,16 +230,16 @@ static void place_box(const struct dig_ode_bed *const bed)
         high[0] = fmax(high[0], world[0]);
         high[2] = fmax(high[2], world[2]);
     }
-    dGeomBoxSetLengths(bed->tool_box, high[0] - low[0], tool->bucket.width_m, high[2] - low[2]);
-    dGeomSetPosition(bed->tool_box, tool->pose.x_m + 0.5 * (low[0] + high[0]), 0.0,
+    dGeomBoxSetLengths(box, high[0] - low[0], tool->bucket.width_m, high[2] - low[2]);
+    dGeomSetPosition(box, tool->pose.x_m + 0.5 * (low[0] + high[0]), 0.0,
                      tool->pose.z_m + 0.5 * (low[2] + high[2]));
 }
 
 // Poses of the rocks at present, without loads.
-static void place_rocks(struct dig_ode_bed *const bed)
+static void place_rocks(const struct bed *const bed)
 {
-    for (size_t r = 0; r < bed->rocks; r++) {
-        struct dig_rock *const rock = &bed->rock[r];
+    for (size_t r = 0; r < dig_bodies_rocks(bed->of->bodies); r++) {
+        struct dig_rock *const rock = &bed->of->bodies->obstacles.rock[r];
         const double *const    x    = rock->surface.x_m;
         rock->load                  = (struct dig_wrench){ 0 };
         dGeomSetPosition(bed->rock_geom[r], x[0], x[1], x[2]);
@@ -39,46 +247,62 @@ static void place_rocks(struct dig_ode_bed *const bed)
     }
 }
 
-enum dig_status dig_ode_bed_step(struct dig_ode_bed *const bed, const struct dig_tool *const tool,
-                                 struct dig_wrench *const on_tool)
+static enum dig_status step(struct dig_world *const w)
 {
-    bed->tool          = tool;
-    bed->on_tool       = (struct dig_wrench){ 0 };
-    bed->kick_fraction = bed->started ? 1.0 : 0.5;
-    dSpaceCollide(bed->grains_space, bed, dig_ode_contacts_grain);
-    dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->walls_space, bed,
-                   dig_ode_contacts_wall);
+    struct bed *const bed = w->stand_in_own;
+    bed->kick_fraction    = w->started ? 1.0 : 0.5;
+    w->on_tool            = (struct dig_wrench){ 0 };
     place_rocks(bed);
-    dSpaceCollide2((dGeomID)bed->grains_space, (dGeomID)bed->rocks_space, bed,
-                   dig_ode_contacts_rock);
-    if (tool != NULL) {
-        place_box(bed);
-        dSpaceCollide2((dGeomID)bed->grains_space, bed->tool_box, bed, dig_ode_contacts_tool);
+    dSpaceCollide(bed->grains, bed, touch);
+    dSpaceCollide2((dGeomID)bed->grains, (dGeomID)bed->walls, bed, touch);
+    dSpaceCollide2((dGeomID)bed->grains, (dGeomID)bed->rocks, bed, touch);
+    if (w->tool != NULL) {
+        place_box(w->tool, bed->tool_box);
+        dSpaceCollide2((dGeomID)bed->grains, bed->tool_box, bed, touch_tool);
     }
     dig_ode_history_end_step(&bed->history);
-    if (bed->out_of_memory) {
-        return DIG_ENOMEM;
-    }
-    const double *const g = bed->gravity_mps2;
+    const double *const g = w->gravity_mps2;
     dWorldSetGravity(bed->world, bed->kick_fraction * g[0], bed->kick_fraction * g[1],
                      bed->kick_fraction * g[2]);
-    if (!dWorldQuickStep(bed->world, bed->dt_s)) {
+    if (bed->out_of_memory || !dWorldQuickStep(bed->world, w->dt_s)) {
         return DIG_ENOMEM;
     }
-    if (bed->scene != NULL) {
-        dig_ode_rocks_step(bed->scene, tool, bed->rock_law, bed->dt_s, bed->rock, &bed->on_tool);
+    if (w->bodies != NULL && w->bodies->ode != NULL) {
+        dig_ode_rocks_step(w->bodies->ode, w->tool, w->bodies->rock_law, w->dt_s,
+                           w->bodies->obstacles.rock, &w->on_tool);
     }
-    bed->started = true;
-    *on_tool     = bed->on_tool;
+    dig_wrench_add(&w->on_tool, &w->sum_tool);
+    w->started = true;
+    w->steps++;
     return DIG_OK;
 }
 
-struct dig_motion dig_ode_bed_motion(const struct dig_ode_bed *const bed, const size_t grain)
+// Nobody writes motions: nothing is dug before, and no grain is taken away.
+static enum dig_status sync(struct dig_world *const w, const bool all)
 {
-    return dig_ode_contacts_motion(bed->body[grain]);
+    assert(!all);
+    const struct bed *const bed = w->stand_in_own;
+    for (size_t i = 0; i < w->grains.n; i++) {
+        w->grains.motion[i] = motion_of(bed->body[i]);
+    }
+    return DIG_OK;
 }
 
-static void add_grain(struct dig_ode_bed *const bed, const struct dig_grain_type *const type,
+static void destroy(struct dig_world *const w)
+{
+    struct bed *const bed = w->stand_in_own;
+    dGeomDestroy(bed->tool_box);
+    dSpaceDestroy(bed->grains);
+    dSpaceDestroy(bed->walls);
+    dSpaceDestroy(bed->rocks);
+    dWorldDestroy(bed->world);
+    dCloseODE();
+    dig_ode_history_finish(&bed->history);
+    free(bed->body);
+    free(bed);
+}
+
+static void add_grain(const struct bed *const bed, const struct dig_grain_type *const type,
                       const struct dig_motion *const m, const size_t i)
 {
     bed->body[i] = dBodyCreate(bed->world);
@@ -90,14 +314,14 @@ static void add_grain(struct dig_ode_bed *const bed, const struct dig_grain_type
     dBodySetLinearVel(bed->body[i], m->v_mps[0], m->v_mps[1], m->v_mps[2]);
     dBodySetAngularVel(bed->body[i], m->w_radps[0], m->w_radps[1], m->w_radps[2]);
     dBodySetGyroscopicMode(bed->body[i], 0);
-    bed->grain_geom[i] = dCreateSphere(bed->grains_space, type->radius_m);
-    dGeomSetBody(bed->grain_geom[i], bed->body[i]);
-    dGeomSetData(bed->grain_geom[i], (void *)(uintptr_t)i); // NOLINT(performance-no-int-to-ptr)
+    dGeomID geom = dCreateSphere(bed->grains, type->radius_m);
+    dGeomSetBody(geom, bed->body[i]);
+    set_index(geom, i);
 }
 
 // Cells from the smallest to the largest grain: the default levels are for metres, and ten times
 // slower here.
-static void make_space(struct dig_ode_bed *const bed, const struct dig_grains *const grains)
+static void make_spaces(struct bed *const bed, const struct dig_grains *const grains)
 {
     double least_m = INFINITY;
     double most_m  = 0.0;
@@ -105,85 +329,47 @@ static void make_space(struct dig_ode_bed *const bed, const struct dig_grains *c
         least_m = fmin(least_m, 2.0 * grains->type[k].radius_m);
         most_m  = fmax(most_m, 2.0 * grains->type[k].radius_m);
     }
-    bed->grains_space = dHashSpaceCreate(NULL);
-    dHashSpaceSetLevels(bed->grains_space, (int)floor(log2(least_m)), (int)ceil(log2(most_m)));
-    bed->walls_space = dSimpleSpaceCreate(NULL);
-    bed->rocks_space = dSimpleSpaceCreate(NULL);
-    bed->tool_box    = dCreateBox(NULL, 1.0, 1.0, 1.0);
+    bed->grains = dHashSpaceCreate(NULL);
+    dHashSpaceSetLevels(bed->grains, (int)floor(log2(least_m)), (int)ceil(log2(most_m)));
+    bed->walls    = dSimpleSpaceCreate(NULL);
+    bed->rocks    = dSimpleSpaceCreate(NULL);
+    bed->tool_box = dCreateBox(NULL, 1.0, 1.0, 1.0);
 }
 
-static void add_rocks(struct dig_ode_bed *const bed, const struct dig_bodies *const bodies)
+static void add_surfaces(struct bed *const bed, const struct dig_world *const w)
 {
-    bed->rocks = bodies->obstacles.rocks;
-    bed->scene = bodies->ode;
-    memcpy(bed->rock, bodies->obstacles.rock, sizeof bed->rock);
-    memcpy(bed->rock_law, bodies->rock_law, sizeof bed->rock_law);
-    for (size_t r = 0; r < bed->rocks; r++) {
-        const double *const h = bed->rock[r].surface.half_m;
-        bed->rock_geom[r]     = bed->rock[r].surface.shape == DIG_OBSTACLE_BOX
-                                    ? dCreateBox(bed->rocks_space, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
-                                    : dCreateSphere(bed->rocks_space, h[0]);
-        dGeomSetData(bed->rock_geom[r], (void *)(uintptr_t)r); // NOLINT(performance-no-int-to-ptr)
+    for (size_t k = 0; k < w->walls; k++) {
+        const double *const n = w->wall[k].normal;
+        set_index(dCreatePlane(bed->walls, n[0], n[1], n[2], w->wall[k].offset_m), k);
+    }
+    for (size_t r = 0; r < dig_bodies_rocks(w->bodies); r++) {
+        bed->rock_geom[r] = dig_ode_rocks_shape(bed->rocks, &w->bodies->obstacles.rock[r].surface);
+        set_index(bed->rock_geom[r], r);
     }
 }
 
-struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *const world)
+enum dig_status dig_ode_bed_take_over(struct dig_world *const w)
 {
-    if (world->bodies != NULL && world->bodies->clumps > 0) {
-        return NULL;
+    static const struct dig_stand_in stand_in = { step, sync, destroy };
+    if (w->bodies != NULL && w->bodies->clumps > 0) {
+        return DIG_EINVAL;
     }
-    const struct dig_grains *const grains = &world->grains;
-    struct dig_ode_bed *const      bed    = calloc(1, sizeof *bed);
-    if (bed == NULL || !dInitODE2(0)) {
+    struct bed *const bed  = calloc(1, sizeof *bed);
+    dBodyID *const    body = calloc(w->grains.n + 1, sizeof *body);
+    if (bed == NULL || body == NULL || !dInitODE2(0)) {
         free(bed);
-        return NULL;
+        free(body);
+        return DIG_ENOMEM;
     }
-    bed->n     = grains->n;
+    bed->of    = w;
+    bed->body  = body;
     bed->world = dWorldCreate();
-    make_space(bed, grains);
-    bed->dt_s = world->dt_s;
-    memcpy(bed->gravity_mps2, world->gravity_mps2, sizeof bed->gravity_mps2);
-    memcpy(bed->type, grains->type, sizeof bed->type);
-    memcpy(bed->pair_law, world->pair_law, sizeof bed->pair_law);
-    memcpy(bed->wall_law, world->wall_law, sizeof bed->wall_law);
-    memcpy(bed->tool_law, world->tool_law, sizeof bed->tool_law);
-    bed->body       = calloc(bed->n + 1, sizeof(dBodyID));
-    bed->grain_geom = calloc(bed->n + 1, sizeof(dGeomID));
-    bed->type_of    = calloc(bed->n + 1, sizeof *bed->type_of);
-    if (bed->body == NULL || bed->grain_geom == NULL || bed->type_of == NULL) {
-        dig_ode_bed_destroy(bed);
-        return NULL;
+    make_spaces(bed, &w->grains);
+    for (size_t i = 0; i < w->grains.n; i++) {
+        add_grain(bed, &w->grains.type[w->grains.type_of[i]], &w->grains.motion[i], i);
     }
-    memcpy(bed->type_of, grains->type_of, bed->n * sizeof *bed->type_of);
-    for (size_t i = 0; i < bed->n; i++) {
-        add_grain(bed, &grains->type[grains->type_of[i]], &grains->motion[i], i);
-    }
-    for (size_t k = 0; k < world->walls; k++) {
-        const struct dig_wall *const wall = &world->wall[k];
-        dGeomID plane = dCreatePlane(bed->walls_space, wall->normal[0], wall->normal[1],
-                                     wall->normal[2], wall->offset_m);
-        dGeomSetData(plane, (void *)(uintptr_t)k); // NOLINT(performance-no-int-to-ptr)
-    }
-    if (world->bodies != NULL) {
-        add_rocks(bed, world->bodies);
-    }
-    return bed;
-}
-
-void dig_ode_bed_destroy(struct dig_ode_bed *const bed)
-{
-    if (bed == NULL) {
-        return;
-    }
-    dGeomDestroy(bed->tool_box);
-    dSpaceDestroy(bed->grains_space);
-    dSpaceDestroy(bed->walls_space);
-    dSpaceDestroy(bed->rocks_space);
-    dWorldDestroy(bed->world);
-    dCloseODE();
-    dig_ode_history_finish(&bed->history);
-    free(bed->body);
-    free(bed->grain_geom);
-    free(bed->type_of);
-    free(bed);
+    add_surfaces(bed, w);
+    w->stand_in     = &stand_in;
+    w->stand_in_own = bed;
+    return DIG_OK;
 }

@@ -15,22 +15,10 @@
 
 #include "offline_dem/world/world.h"
 
-struct dig_ode_bed; // one ODE world; not to be shared between threads
-
-/// ODE bodies for the grains, laws, walls, rocks and time step of a world that has not been
-/// stepped. The world is only read. Movable rocks stand in one ODE scene, so that only one of the
-/// two may be stepped. NULL when memory is short, or the world has clumps: ODE rotates bodies by
-/// another scheme, which agrees with rigid.h's to the order of the step only.
-struct dig_ode_bed *dig_ode_bed_create(const struct dig_world *world);
-
-/// NULL is allowed.
-void dig_ode_bed_destroy(struct dig_ode_bed *bed);
-
-/// One step; tool and *on_tool as in struct dig_world. About a microsecond a grain. DIG_ENOMEM.
-DIG_MUST_CHECK enum dig_status
-dig_ode_bed_step(struct dig_ode_bed *bed, const struct dig_tool *tool, struct dig_wrench *on_tool);
-
-/// Grains keep the indices of the world the bed was made from.
-struct dig_motion dig_ode_bed_motion(const struct dig_ode_bed *bed, size_t grain);
+/// From now on ODE steps the grains of a world that has not been stepped, and its rocks. About a
+/// microsecond a grain and step. No motion may be written, and no grain be taken away. DIG_ENOMEM;
+/// DIG_EINVAL for clumps: ODE rotates bodies by another scheme, which agrees with rigid.h's to the
+/// order of the step only.
+DIG_MUST_CHECK enum dig_status dig_ode_bed_take_over(struct dig_world *world);
 
 #endif // DIG_OFFLINE_DEM_REFERENCE_ODE_BED_H

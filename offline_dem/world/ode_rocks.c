@@ -47,15 +47,19 @@ static dBodyID make_body(struct dig_ode_scene *const ode, const struct dig_rock 
     return body;
 }
 
+dGeomID dig_ode_rocks_shape(dSpaceID space, const struct dig_rock_surface *const rock)
+{
+    const double *const h = rock->half_m;
+    return rock->shape == DIG_OBSTACLE_BOX ? dCreateBox(space, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
+                                           : dCreateSphere(space, h[0]);
+}
+
 void dig_ode_rocks_set(struct dig_ode_scene *const ode, const size_t rocks,
                        const struct dig_rock rock[])
 {
     remove_all(ode);
     for (size_t i = 0; i < rocks; i++) {
-        const double *const h = rock[i].surface.half_m;
-        ode->rock[i]          = rock[i].surface.shape == DIG_OBSTACLE_BOX
-                                    ? dCreateBox(ode->rocks, 2.0 * h[0], 2.0 * h[1], 2.0 * h[2])
-                                    : dCreateSphere(ode->rocks, h[0]);
+        ode->rock[i] = dig_ode_rocks_shape(ode->rocks, &rock[i].surface);
         // Points to the rock's entry, from which a contact finds its number.
         dGeomSetData(ode->rock[i], &ode->rock[i]);
         ode->body[i] = rock[i].movable ? make_body(ode, &rock[i]) : NULL;

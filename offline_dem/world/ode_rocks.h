@@ -8,10 +8,15 @@
 #include "offline_dem/world/obstacles.h"
 #include "offline_dem/world/ode_scene.h"
 
+#include <ode/ode.h>
+
 /// Contact of a rock with rigid surfaces.
 struct dig_rock_contact_law {
     double normal_Npm, damping_Nspm, friction;
 };
+
+/// A rock's geometry in a space, at no pose yet.
+dGeomID dig_ode_rocks_shape(dSpaceID space, const struct dig_rock_surface *rock);
 
 /// Replaces the scene's rocks by these, at their poses.
 void dig_ode_rocks_set(struct dig_ode_scene *ode, size_t rocks, const struct dig_rock rock[]);

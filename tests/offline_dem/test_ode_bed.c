@@ -34,7 +34,8 @@ TEST(a_world_with_clumps_is_refused)
     struct dig_world  world   = dem_world(1, x, dem_material(0.5, 0.5));
     struct dig_bodies bodies  = { .clumps = 1 };
     world.bodies              = &bodies;
-    assert_null(dig_ode_bed_create(&world));
+    assert_int_equal(dig_ode_bed_take_over(&world), DIG_EINVAL);
+    assert_null(world.stand_in);
     world.bodies = NULL;
     dig_world_finish(&world);
 }
