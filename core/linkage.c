@@ -30,13 +30,6 @@ static enum dig_status close_loop(const struct dig_four_bar *const bar, const st
     return DIG_OK;
 }
 
-static struct dig_vec2 turned(const struct dig_vec2 v, const double angle_rad)
-{
-    const double c = cos(angle_rad);
-    const double s = sin(angle_rad);
-    return (struct dig_vec2){ c * v.x - s * v.y, s * v.x + c * v.y };
-}
-
 enum dig_status dig_linkage_solve(const struct dig_machine *const machine, const double bucket_rad,
                                   struct dig_linkage_pose *const pose)
 {
@@ -47,7 +40,7 @@ enum dig_status dig_linkage_solve(const struct dig_machine *const machine, const
 
     const struct dig_four_bar *const bar = &machine->four_bar;
     const struct dig_vec2            q   = { machine->link[DIG_JOINT_ARM].length_m, 0.0 };
-    const struct dig_vec2            ear = turned(bar->ear_m, bucket_rad);
+    const struct dig_vec2            ear = dig_vec2_turned(bar->ear_m, bucket_rad);
     const struct dig_vec2            k   = dig_vec2_add_scaled(q, 1.0, ear);
     struct dig_vec2                  m;
     const enum dig_status            closed = close_loop(bar, k, &m);
@@ -88,7 +81,7 @@ static enum dig_status solve_pin_cylinder(const struct dig_machine *const machin
 
     const double hinge_x_m = joint == DIG_JOINT_ARM ? machine->link[DIG_JOINT_BOOM].length_m : 0.0;
     const struct dig_vec2 hinge      = { hinge_x_m, 0.0 };
-    const struct dig_vec2 from_hinge = turned(cylinder->eye_m, angle_rad);
+    const struct dig_vec2 from_hinge = dig_vec2_turned(cylinder->eye_m, angle_rad);
     const struct dig_vec2 eye        = dig_vec2_add_scaled(hinge, 1.0, from_hinge);
     const struct dig_vec2 rod        = dig_vec2_sub(eye, cylinder->base_m);
     const double          length_m   = dig_vec2_norm(rod);

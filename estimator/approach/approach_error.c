@@ -36,11 +36,6 @@ static double mean_square(const double a[const DIG_CURVE_POINTS],
     return sum / DIG_CURVE_POINTS;
 }
 
-static double value_of(const struct dig_approach *const approach, const bool attack)
-{
-    return attack ? approach->attack_rad : approach->depth;
-}
-
 // A table without the i-th node of one gravel, which is then predicted from the rest.
 static struct dig_nodes without(const struct dig_nodes *const nodes, const size_t i)
 {
@@ -80,7 +75,7 @@ static void leave_out(const struct dig_curve_set *const set, const size_t entry,
 {
     const struct dig_nodes    rest  = without(nodes, i);
     const struct dig_approach at    = nodes->approach[i];
-    const double              value = value_of(&at, attack);
+    const double              value = dig_approach_on_axis(&at, attack);
     double                    low   = 0.0;
     double                    high  = 0.0;
     if (!dig_approach_span(&rest, attack, value, &low, &high) || !(high > low)) {
@@ -126,7 +121,8 @@ static void take_all(const struct dig_curve_set *const set, const size_t entry,
     static const double       nothing[DIG_CURVE_POINTS];
     const struct dig_approach plain = dig_approach_plain();
     struct dig_response       here;
-    const double step = value_of(&nodes->approach[i], attack) - value_of(&plain, attack);
+    const double              step =
+        dig_approach_on_axis(&nodes->approach[i], attack) - dig_approach_on_axis(&plain, attack);
     if (fabs(step) > 0.0 &&
         dig_response_own(set, entry, trajectory, &nodes->approach[i], &plain, &here)) {
         for (int c = 0; c < DIG_CHANNELS; c++) {
@@ -139,7 +135,8 @@ static void take_all(const struct dig_curve_set *const set, const size_t entry,
 static bool is_on_axis(const struct dig_approach *const approach, const bool attack)
 {
     const struct dig_approach plain = dig_approach_plain();
-    return fabs(value_of(approach, !attack) - value_of(&plain, !attack)) < 1e-9;
+    return fabs(dig_approach_on_axis(approach, !attack) - dig_approach_on_axis(&plain, !attack)) <
+           1e-9;
 }
 
 static void measure_axis(const struct dig_curve_set *const set, const size_t trajectory,

@@ -168,7 +168,7 @@ struct bracket {
     double f;
 };
 
-static double value_of(const struct dig_approach *const approach, const bool attack)
+double dig_approach_on_axis(const struct dig_approach *const approach, const bool attack)
 {
     return attack ? approach->attack_rad : approach->depth;
 }
@@ -177,28 +177,28 @@ static bool find_bracket(const struct dig_nodes *const nodes, const bool attack,
                          struct bracket *const bracket)
 {
     const struct dig_approach plain = dig_approach_plain();
-    const double              zero  = value_of(&plain, !attack);
+    const double              zero  = dig_approach_on_axis(&plain, !attack);
     size_t                    low   = DIG_NODES_MAX;
     size_t                    high  = DIG_NODES_MAX;
     for (size_t i = 0; i < nodes->nodes; i++) {
-        const double at = value_of(&nodes->approach[i], attack);
-        if (fabs(value_of(&nodes->approach[i], !attack) - zero) > same) {
+        const double at = dig_approach_on_axis(&nodes->approach[i], attack);
+        if (fabs(dig_approach_on_axis(&nodes->approach[i], !attack) - zero) > same) {
             continue;
         }
         if (at <= value + same &&
-            (low == DIG_NODES_MAX || at > value_of(&nodes->approach[low], attack))) {
+            (low == DIG_NODES_MAX || at > dig_approach_on_axis(&nodes->approach[low], attack))) {
             low = i;
         }
         if (at >= value - same &&
-            (high == DIG_NODES_MAX || at < value_of(&nodes->approach[high], attack))) {
+            (high == DIG_NODES_MAX || at < dig_approach_on_axis(&nodes->approach[high], attack))) {
             high = i;
         }
     }
     if (low == DIG_NODES_MAX || high == DIG_NODES_MAX) {
         return false;
     }
-    const double from = value_of(&nodes->approach[low], attack);
-    const double to   = value_of(&nodes->approach[high], attack);
+    const double from = dig_approach_on_axis(&nodes->approach[low], attack);
+    const double to   = dig_approach_on_axis(&nodes->approach[high], attack);
     const double f    = to - from > same ? (value - from) / (to - from) : 0.0;
     *bracket          = (struct bracket){ low, high, fmin(fmax(f, 0.0), 1.0) };
     return true;
@@ -211,8 +211,8 @@ bool dig_approach_span(const struct dig_nodes *const nodes, const bool attack, c
     if (!find_bracket(nodes, attack, value, &bracket)) {
         return false;
     }
-    *low  = value_of(&nodes->approach[bracket.low], attack);
-    *high = value_of(&nodes->approach[bracket.high], attack);
+    *low  = dig_approach_on_axis(&nodes->approach[bracket.low], attack);
+    *high = dig_approach_on_axis(&nodes->approach[bracket.high], attack);
     return true;
 }
 

@@ -50,6 +50,9 @@ double dig_approach_clamp(const struct dig_curve_set *set, size_t trajectory,
 bool dig_approach_weigh(const struct dig_nodes *nodes, const struct dig_approach *approach,
                         double weight[DIG_NODES_MAX]);
 
+/// Its attack in rad, or its depth.
+double dig_approach_on_axis(const struct dig_approach *approach, bool attack);
+
 /// The digs on one axis (the other plain) around a depth, or around an attack in rad; equal at one
 /// of them. False when it lies beyond them all.
 bool dig_approach_span(const struct dig_nodes *nodes, bool attack, double value, double *low,

@@ -17,14 +17,6 @@ struct parts {
     double of[DIG_PARTS]; // of the soil, rig axes
 };
 
-// Rotates a vector from a frame whose +x stands at this angle.
-static struct dig_vec2 turned(const struct dig_vec2 v, const double rad)
-{
-    const double c = cos(rad);
-    const double s = sin(rad);
-    return (struct dig_vec2){ c * v.x - s * v.y, s * v.x + c * v.y };
-}
-
 static struct parts solve(const struct dig_machine *const machine, const double in[const INPUTS],
                           const double turn_radps, const struct dig_vec2 gravity)
 {
@@ -33,8 +25,8 @@ static struct parts solve(const struct dig_machine *const machine, const double 
     const double                         phi    = in[IN_PHI];
 
     // From the pin to the sensor and to the centre of mass.
-    const struct dig_vec2 to_sensor = turned(sensor->place_m, phi);
-    const struct dig_vec2 to_com    = turned(bucket->com_m, phi);
+    const struct dig_vec2 to_sensor = dig_vec2_turned(sensor->place_m, phi);
+    const struct dig_vec2 to_com    = dig_vec2_turned(bucket->com_m, phi);
     const struct dig_vec2 across    = { -to_com.y, to_com.x };
     struct dig_vec2       com_mps2  = { in[IN_PIN_X], in[IN_PIN_Z] };
     com_mps2                        = dig_vec2_add_scaled(com_mps2, in[IN_TURN], across);
@@ -44,7 +36,7 @@ static struct parts solve(const struct dig_machine *const machine, const double 
     const struct dig_vec2 felt   = dig_vec2_sub(gravity, com_mps2);
     const struct dig_vec2 mass_N = { bucket->mass_kg * felt.x, bucket->mass_kg * felt.y };
     const struct dig_vec2 read_N =
-        turned((struct dig_vec2){ in[IN_FX], in[IN_FZ] }, phi + sensor->turn_rad);
+        dig_vec2_turned((struct dig_vec2){ in[IN_FX], in[IN_FZ] }, phi + sensor->turn_rad);
     const struct dig_vec2 soil_N = dig_vec2_sub(read_N, mass_N);
 
     const double soil_Nm = in[IN_MY] + dig_vec2_cross(to_sensor, read_N) -
@@ -220,7 +212,7 @@ enum dig_status dig_sensed_solve(const struct dig_machine *const       machine,
     placed.attitude_rad[DIG_JOINT_BUCKET] = phi;
     placed.pin_m[DIG_JOINT_BUCKET]        = pin;
     placed.com_m[DIG_JOINT_BUCKET] =
-        dig_vec2_add_scaled(pin, 1.0, turned(machine->link[DIG_JOINT_BUCKET].com_m, phi));
+        dig_vec2_add_scaled(pin, 1.0, dig_vec2_turned(machine->link[DIG_JOINT_BUCKET].com_m, phi));
 
     *wrench = is_trusted(&machine->sensor, &inputs)
                   ? make_wrench(machine, &inputs, motion->turn_radps, gravity)

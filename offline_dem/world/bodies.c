@@ -1,6 +1,7 @@
 #include "offline_dem/world/bodies.h"
 
 #include "offline_dem/law/period.h"
+#include "offline_dem/world/surfaces.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -103,7 +104,7 @@ void dig_bodies_apply_loads(struct dig_world *const world)
 {
     struct dig_bodies *const bodies = world->bodies;
     if (bodies->obstacles.rocks > 0) {
-        dig_obstacles_add_loads(&bodies->obstacles, world);
+        dig_surfaces_add_rock_loads(world);
     }
     for (size_t b = 0; b < bodies->clumps; b++) {
         if (!bodies->clump[b].gone) {

@@ -1,7 +1,6 @@
 #include "offline_dem/world/obstacles.h"
 
 #include "core/units.h"
-#include "offline_dem/kernel/contacts.h"
 #include "offline_dem/law/period.h"
 
 #include <math.h>
@@ -125,64 +124,21 @@ bool dig_obstacles_is_near(const struct dig_obstacles *const o, const struct dig
            reach_m + o->margin_m[rock];
 }
 
-static void fill_block(const struct dig_world *const world, const struct dig_rock *const rock,
-                       const struct dig_motion *const m, const double radius_m, const size_t c,
-                       struct dig_block *const block, double arm_m[3])
+void dig_obstacles_separation(const struct dig_world *const world,
+                              const struct dig_rock *const rock, const double x_m[],
+                              const double radius_m, double d_m[3], double arm_m[3],
+                              double v_mps[3])
 {
     double closest_m[3];
     double image_m[3];
-    double d_m[3];
-    nearest_image(world, &rock->surface, m->x_m, image_m);
+    nearest_image(world, &rock->surface, x_m, image_m);
     dig_rock_surface_separation(&rock->surface, image_m, radius_m, closest_m, d_m);
-    const double *const w = rock->w_radps;
     for (int k = 0; k < 3; k++) {
         arm_m[k] = closest_m[k] - rock->surface.x_m[k];
     }
+    const double *const w = rock->w_radps;
     for (int k = 0; k < 3; k++) {
-        const double v = rock->v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
-                         w[(k + 2) % 3] * arm_m[(k + 1) % 3];
-        block->in[k][c]     = d_m[k];
-        block->in[3 + k][c] = m->v_mps[k] - v;
-        block->in[6 + k][c] = m->w_radps[k];
-        block->in[9 + k][c] = w[k];
-    }
-}
-
-static void apply_block(struct dig_world *const world, struct dig_obstacles *const o,
-                        const struct dig_contacts *const list, const size_t first,
-                        const size_t count, const struct dig_block *const block,
-                        const double arm_m[DIG_BLOCK][3])
-{
-    for (size_t c = 0; c < count; c++) {
-        const double f[3]        = { block->out[0][c], block->out[1][c], block->out[2][c] };
-        const double on_grain[3] = { block->out[3][c], block->out[4][c], block->out[5][c] };
-        const double t[3]        = { block->out[6][c], block->out[7][c], block->out[8][c] };
-        dig_grains_add_load(&world->grains, list->i[first + c], f, on_grain);
-        dig_wrench_react(f, t, arm_m[c], &o->rock[list->j[first + c] - DIG_FIRST_ROCK].load);
-    }
-}
-
-void dig_obstacles_add_loads(struct dig_obstacles *const o, struct dig_world *const world)
-{
-    for (size_t r = 0; r < o->rocks; r++) {
-        o->rock[r].load = (struct dig_wrench){ 0 };
-    }
-    for (size_t type = 0; type < world->grains.types; type++) {
-        struct dig_contacts *const list     = &world->surface[DIG_ROCK_LISTS + type];
-        const double               radius_m = world->grains.type[type].radius_m;
-        for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
-            const size_t     left  = list->n - first;
-            const size_t     count = left < DIG_BLOCK ? left : DIG_BLOCK;
-            struct dig_block block;
-            double           arm_m[DIG_BLOCK][3];
-            for (size_t c = 0; c < count; c++) {
-                const struct dig_motion m = dig_grains_motion(&world->grains, list->i[first + c]);
-                fill_block(world, &o->rock[list->j[first + c] - DIG_FIRST_ROCK], &m, radius_m, c,
-                           &block, arm_m[c]);
-            }
-            dig_kernel_block(world->isa, &world->wall_law[type], world->dt_s, list, first, count,
-                             &block);
-            apply_block(world, o, list, first, count, &block, (const double(*)[3])arm_m);
-        }
+        v_mps[k] = rock->v_mps[k] + w[(k + 1) % 3] * arm_m[(k + 2) % 3] -
+                   w[(k + 2) % 3] * arm_m[(k + 1) % 3];
     }
 }

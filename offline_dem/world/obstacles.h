@@ -48,7 +48,10 @@ bool dig_obstacles_is_near(const struct dig_obstacles *obstacles, const struct d
 /// Whether a rock has left its margin: contacts with it may be missing.
 bool dig_obstacles_left_margin(const struct dig_obstacles *obstacles);
 
-/// Adds the loads of the world's contacts with rocks to the grains and the rocks.
-void dig_obstacles_add_loads(struct dig_obstacles *obstacles, struct dig_world *world);
+/// Of a grain's nearest image and the rock's closest point to it: their distance d_m, the arm from
+/// the rock's centre to that point and its velocity.
+void dig_obstacles_separation(const struct dig_world *world, const struct dig_rock *rock,
+                              const double x_m[], double radius_m, double d_m[3], double arm_m[3],
+                              double v_mps[3]);
 
 #endif // DIG_OFFLINE_DEM_WORLD_OBSTACLES_H

@@ -1,20 +1,23 @@
 #include "offline_dem/world/surfaces.h"
 
 #include "offline_dem/shapes/plate_contacts.h"
+#include "offline_dem/world/bodies.h"
 
 #include <math.h>
 #include <string.h>
 
 #define FAR_m 1e9 // distance that means no contact
 
+// A surface d from a grain moves at v there and turns by w.
 static void fill_contact(struct dig_block *const block, const size_t c,
-                         const struct dig_motion *const m, const double d[3], const double v[3])
+                         const struct dig_motion *const m, const double d[3], const double v[3],
+                         const double w[3])
 {
     for (int k = 0; k < 3; k++) {
         block->in[k][c]     = d[k];
         block->in[3 + k][c] = m->v_mps[k] - v[k];
         block->in[6 + k][c] = m->w_radps[k];
-        block->in[9 + k][c] = 0.0;
+        block->in[9 + k][c] = w[k];
     }
 }
 
@@ -37,8 +40,9 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
                           const size_t count, struct dig_block *const block,
                           double arm_m[DIG_BLOCK][3])
 {
-    const uint32_t            i = list->i[first + c];
-    const struct dig_motion   m = dig_grains_motion(&w->grains, i);
+    static const double       still[3] = { 0.0, 0.0, 0.0 };
+    const uint32_t            i        = list->i[first + c];
+    const struct dig_motion   m        = dig_grains_motion(&w->grains, i);
     struct dig_plate_contacts near;
     double                    body_m[3];
     dig_tool_to_body(w->tool, m.x_m, body_m);
@@ -58,27 +62,26 @@ static size_t fill_plates(struct dig_world *const w, struct dig_contacts *const 
         if (near.touched[k]) {
             dig_tool_separation(w->tool, body_m, near.closest_m[k], d, arm_m[c + k], v);
         }
-        fill_contact(block, c + k, &m, d, v);
+        fill_contact(block, c + k, &m, d, v, still);
     }
     return near.count;
 }
 
-static void add_loads(struct dig_world *const w, const struct dig_contacts *const list,
-                      const size_t first, const size_t count, const struct dig_block *const block,
-                      const double arm_m[DIG_BLOCK][3], struct dig_wrench *const sum)
+// Of contact c of a block, to grain i and to the surface's sum.
+static void add_load(struct dig_world *const w, const uint32_t i,
+                     const struct dig_block *const block, const size_t c, const double arm_m[3],
+                     struct dig_wrench *const sum)
 {
-    for (size_t c = 0; c < count; c++) {
-        double f[3];
-        double on_grain[3];
-        double t[3];
-        for (int k = 0; k < 3; k++) {
-            f[k]        = block->out[k][c];
-            on_grain[k] = block->out[3 + k][c];
-            t[k]        = block->out[6 + k][c];
-        }
-        dig_grains_add_load(&w->grains, list->i[first + c], f, on_grain);
-        dig_wrench_react(f, t, arm_m[c], sum);
+    double f[3];
+    double on_grain[3];
+    double t[3];
+    for (int k = 0; k < 3; k++) {
+        f[k]        = block->out[k][c];
+        on_grain[k] = block->out[3 + k][c];
+        t[k]        = block->out[6 + k][c];
     }
+    dig_grains_add_load(&w->grains, i, f, on_grain);
+    dig_wrench_react(f, t, arm_m, sum);
 }
 
 // A block ends before a grain whose plates would not all fit.
@@ -110,7 +113,9 @@ static void step_plates(struct dig_world *const w, const size_t type, const size
             c += fill_plates(w, list, radius_m, first, c, count, &block, arm_m);
         }
         dig_kernel_block(w->isa, &w->tool_law[type], w->dt_s, list, first, count, &block);
-        add_loads(w, list, first, count, &block, (const double(*)[3])arm_m, on_tool);
+        for (size_t c = 0; c < count; c++) {
+            add_load(w, list->i[first + c], &block, c, arm_m[c], on_tool);
+        }
         first += count;
     }
 }
@@ -124,5 +129,37 @@ void dig_surfaces_add_loads(struct dig_world *const w, const size_t slab,
     }
     for (size_t type = 0; type < w->grains.types; type++) {
         step_plates(w, type, slab, on_tool);
+    }
+}
+
+void dig_surfaces_add_rock_loads(struct dig_world *const w)
+{
+    struct dig_rock *const rock = w->bodies->obstacles.rock;
+    for (size_t r = 0; r < w->bodies->obstacles.rocks; r++) {
+        rock[r].load = (struct dig_wrench){ 0 };
+    }
+    for (size_t type = 0; type < w->grains.types; type++) {
+        struct dig_contacts *const list     = &w->surface[DIG_ROCK_LISTS + type];
+        const double               radius_m = w->grains.type[type].radius_m;
+        for (size_t first = 0; first < list->n; first += DIG_BLOCK) {
+            const size_t          left  = list->n - first;
+            const size_t          count = left < DIG_BLOCK ? left : DIG_BLOCK;
+            const uint32_t *const i     = list->i + first;
+            const uint32_t *const j     = list->j + first;
+            struct dig_block      block;
+            double                arm_m[DIG_BLOCK][3];
+            for (size_t c = 0; c < count; c++) {
+                const struct dig_rock *const of = &rock[j[c] - DIG_FIRST_ROCK];
+                const struct dig_motion      m  = dig_grains_motion(&w->grains, i[c]);
+                double                       d[3];
+                double                       v[3];
+                dig_obstacles_separation(w, of, m.x_m, radius_m, d, arm_m[c], v);
+                fill_contact(&block, c, &m, d, v, of->w_radps);
+            }
+            dig_kernel_block(w->isa, &w->wall_law[type], w->dt_s, list, first, count, &block);
+            for (size_t c = 0; c < count; c++) {
+                add_load(w, i[c], &block, c, arm_m[c], &rock[j[c] - DIG_FIRST_ROCK].load);
+            }
+        }
     }
 }
