@@ -8,6 +8,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // Of the curve's largest value: another compiler may round the last bits otherwise.
@@ -53,16 +54,18 @@ static void check_entry(struct dig_store *const store, const struct dig_entry_se
                       (runs == 0 || agree(&stored->mean[0][0], &actual->mean[0][0])) &&
                       (runs < 2 || agree(&stored->sd[0][0], &actual->sd[0][0]));
     if (!same) {
-        const bool varied = g->effect != DIG_EFFECTS;
-        char       how[DIG_APPROACH_TEXT_SIZE];
-        dig_approach_text(&g->approach, how);
+        struct dig_run_origin origin = { .gravel     = g->gravel,
+                                         .approach   = g->approach,
+                                         .trajectory = trajectory };
+        char                  text[DIG_RUN_TEXT_SIZE];
+        if (g->effect != DIG_EFFECTS) {
+            (void)snprintf(origin.effect, sizeof origin.effect, "%s", dig_effect_name(g->effect));
+        }
+        dig_run_text(store, &origin, text);
         dig_db_fail(&store->db, DIG_EINVAL,
-                    "entry: friction %g, rolling %g, %g kg/m3%s%s on %s%s: of %d packings, differs "
-                    "from its %zu runs, expected their mean and spread; digtable merge into a new "
-                    "table makes them anew",
-                    g->gravel.value[0], g->gravel.value[1], g->gravel.value[2],
-                    varied ? " with " : "", varied ? dig_effect_name(g->effect) : "",
-                    store->head.trajectory[trajectory].name, how, all->packings[at], runs);
+                    "entry: %s: of %d packings, differs from its %zu runs, expected their mean and "
+                    "spread; digtable merge into a new table makes them anew",
+                    text, all->packings[at], runs);
     }
 }
 

@@ -11,24 +11,21 @@
 #include <string.h>
 #include <unistd.h>
 
-#define DUG  "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad"
-#define KEY  DUG ", trajectory, packing"
-#define DATA "seed, engine, version, grains, windows, first_s, step_s, curve"
-
 // Runs by key, and those of the input at hand. Temporary: the table itself is written once, in
 // order.
 static const char gather_sql[] =
-    "CREATE TEMP TABLE gather (" KEY ", " DATA ", made_utc, wall_s, UNIQUE (" KEY "));"
-    "CREATE TEMP TABLE came (" KEY ", " DATA ", made_utc, wall_s);";
+    "CREATE TEMP TABLE gather (" DIG_KEY_COLUMNS ", " DIG_MADE_COLUMNS ", UNIQUE (" DIG_KEY_COLUMNS
+    "));"
+    "CREATE TEMP TABLE came (" DIG_KEY_COLUMNS ", " DIG_MADE_COLUMNS ");";
 
-static const char runs_sql[] = "SELECT " KEY ", " DATA ", made_utc, wall_s FROM run JOIN ground g "
-                               "ON g.id = run.ground";
+static const char runs_sql[] =
+    "SELECT " DIG_KEY_COLUMNS ", " DIG_MADE_COLUMNS " FROM run JOIN ground g "
+    "ON g.id = run.ground";
 
 static const char conflict_sql[] =
-    "SELECT friction, rolling, density_kgpm3, effect, trajectory, packing, depth, attack_rad FROM "
-    "came c JOIN gather a USING (" KEY ") WHERE (c.seed, c.engine, c.version, c.grains, c.windows, "
-    "c.first_s, c.step_s, c.curve) <> (a.seed, a.engine, a.version, a.grains, a.windows, "
-    "a.first_s, a.step_s, a.curve) LIMIT 1";
+    "SELECT " DIG_KEY_COLUMNS " FROM came c JOIN gather a USING (" DIG_KEY_COLUMNS ") WHERE "
+    "(c.seed, c.engine, c.version, c.grains, c.windows, c.first_s, c.step_s, c.curve) <> "
+    "(a.seed, a.engine, a.version, a.grains, a.windows, a.first_s, a.step_s, a.curve) LIMIT 1";
 
 static const char take_sql[] =
     "INSERT INTO gather SELECT * FROM came WHERE true ON CONFLICT DO UPDATE SET made_utc = "
@@ -36,11 +33,11 @@ static const char take_sql[] =
     "(made_utc, wall_s); DELETE FROM came;";
 
 static const char write_sql[] =
-    "INSERT INTO ground (" DUG ") SELECT DISTINCT " DUG " FROM gather ORDER BY 1, 2, 3, 4, 5, 6, 7;"
-    "INSERT INTO run (ground, trajectory, packing, " DATA ", made_utc, wall_s) SELECT g.id, "
-    "trajectory, packing, " DATA ", made_utc, wall_s FROM gather a JOIN ground g ON (g.friction, "
-    "g.rolling, g.density_kgpm3, g.effect, g.magnitude, g.depth, g.attack_rad) = (a.friction, "
-    "a.rolling, a.density_kgpm3, a.effect, a.magnitude, a.depth, a.attack_rad) ORDER BY 1, 2, 3;";
+    "INSERT INTO ground (" DIG_GROUND_COLUMNS ") SELECT DISTINCT " DIG_GROUND_COLUMNS
+    " FROM gather ORDER BY 1, 2, 3, 4, 5, 6, 7;"
+    "INSERT INTO run (ground, trajectory, packing, " DIG_MADE_COLUMNS ") SELECT g.id, trajectory, "
+    "packing, " DIG_MADE_COLUMNS " FROM gather JOIN ground g USING (" DIG_GROUND_COLUMNS ") "
+    "ORDER BY 1, 2, 3;";
 
 // Every row that a statement gives of one database becomes one of another's table.
 static void copy(struct dig_db *const from, const char *const select, struct dig_db *const to,
@@ -67,23 +64,14 @@ static void check_conflict(struct dig_store *const store, const char *const inpu
     struct dig_db       named = { store->db.sql, input, store->db.status, store->db.error };
     sqlite3_stmt *const s     = dig_sql_prepare(&named, conflict_sql);
     if (dig_sql_row(&named, s)) {
-        const char *const effect = (const char *)sqlite3_column_text(s, 3);
-        const bool        plain  = effect == NULL || effect[0] == '\0';
-        const int         at     = sqlite3_column_int(s, 4);
-        char              how[DIG_APPROACH_TEXT_SIZE];
-
-        const struct dig_approach approach = { sqlite3_column_double(s, 6),
-                                               sqlite3_column_double(s, 7) };
-        dig_approach_text(&approach, how);
-        dig_db_fail(
-            &named, DIG_EINVAL,
-            "run: packing %lld of friction %g, rolling %g, %g kg/m3%s%s on %s%s differs from "
-            "another input's, expected the same run or another",
-            (long long)sqlite3_column_int64(s, 5), sqlite3_column_double(s, 0),
-            sqlite3_column_double(s, 1), sqlite3_column_double(s, 2), plain ? "" : " with ",
-            plain ? "" : effect,
-            at >= 0 && at < (int)store->head.trajectories ? store->head.trajectory[at].name : "?",
-            how);
+        struct dig_run run = { .windows = 0 };
+        char           text[DIG_RUN_TEXT_SIZE];
+        (void)dig_run_read(s, DIG_RUN_SEED, &run);
+        dig_run_text(store, &run.origin, text);
+        dig_db_fail(&named, DIG_EINVAL,
+                    "run: packing %zu of %s differs from another input's, expected the same run or "
+                    "another",
+                    run.origin.packing, text);
     }
     (void)sqlite3_finalize(s);
     store->db.status = named.status;

@@ -69,51 +69,36 @@ static uint8_t *pack_recording(const struct dig_recording *const r)
 }
 
 // Makes the ground's row where there is none yet, and finds its key.
-static sqlite3_int64 make_ground(struct dig_db *const db, const struct dig_run_origin *const origin)
+static sqlite3_int64 make_ground(struct dig_db *const db, const struct dig_run *const run)
 {
     sqlite3_stmt *const s = dig_sql_prepare(
-        db, "INSERT INTO ground (friction, rolling, density_kgpm3, effect, magnitude, depth, "
-            "attack_rad) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) "
+        db, "INSERT INTO ground (" DIG_GROUND_COLUMNS ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) "
             "ON CONFLICT DO UPDATE SET friction = friction RETURNING id");
-    dig_ground_bind(s, origin);
+    dig_run_bind(s, 1, DIG_RUN_FRICTION, DIG_RUN_TRAJECTORY, run);
     const sqlite3_int64 id = dig_sql_row(db, s) ? sqlite3_column_int64(s, 0) : 0;
     (void)sqlite3_finalize(s);
     return id;
 }
 
 static void insert_run(struct dig_store *const store, const sqlite3_int64 ground,
-                       const struct dig_run_origin *const origin, const size_t windows,
-                       const double first_s, const double step_s, const uint8_t *const bytes)
+                       const struct dig_run *const run, const uint8_t *const bytes)
 {
+    enum { TRAJECTORY = 2 }; // its parameter; the others follow
     struct dig_db *const db = &store->db;
     sqlite3_stmt *const  s =
-        dig_sql_prepare(db, "INSERT INTO run (ground, trajectory, packing, seed, engine, version, "
-                            "grains, windows, first_s, step_s, curve, made_utc, wall_s) "
+        dig_sql_prepare(db, "INSERT INTO run (ground, trajectory, packing, " DIG_MADE_COLUMNS ") "
                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     (void)sqlite3_bind_int64(s, 1, ground);
-    (void)sqlite3_bind_int64(s, 2, (sqlite3_int64)origin->trajectory);
-    (void)sqlite3_bind_int64(s, 3, (sqlite3_int64)origin->packing);
-    (void)sqlite3_bind_int64(s, 4, (sqlite3_int64)origin->seed);
-    (void)sqlite3_bind_text(s, 5, origin->engine, -1, SQLITE_STATIC);
-    (void)sqlite3_bind_text(s, 6, origin->version, -1, SQLITE_STATIC);
-    (void)sqlite3_bind_int64(s, 7, (sqlite3_int64)origin->grains);
-    (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)windows);
-    (void)sqlite3_bind_double(s, 9, first_s);
-    (void)sqlite3_bind_double(s, 10, step_s);
-    (void)sqlite3_bind_blob64(s, 11, bytes, DIG_CHANNELS * windows * 4, SQLITE_STATIC);
-    (void)sqlite3_bind_text(s, 12, origin->made_utc, -1, SQLITE_STATIC);
-    (void)sqlite3_bind_double(s, 13, origin->wall_s);
+    dig_run_bind(s, TRAJECTORY, DIG_RUN_TRAJECTORY, DIG_RUN_COLUMNS, run);
+    (void)sqlite3_bind_blob64(s, TRAJECTORY + DIG_RUN_CURVE - DIG_RUN_TRAJECTORY, bytes,
+                              DIG_CHANNELS * run->windows * 4, SQLITE_STATIC);
     const int step = db->status == DIG_OK ? sqlite3_step(s) : SQLITE_DONE;
     if (step == SQLITE_CONSTRAINT &&
         sqlite3_extended_errcode(db->sql) == SQLITE_CONSTRAINT_UNIQUE) {
-        char how[DIG_APPROACH_TEXT_SIZE];
-        dig_approach_text(&origin->approach, how);
-        dig_db_fail(db, DIG_EINVAL,
-                    "run: packing %zu of friction %g, rolling %g, %g kg/m3%s%s on %s%s is there "
-                    "already, expected a new one",
-                    origin->packing, origin->gravel.value[0], origin->gravel.value[1],
-                    origin->gravel.value[2], origin->effect[0] != '\0' ? " with " : "",
-                    origin->effect, store->head.trajectory[origin->trajectory].name, how);
+        char text[DIG_RUN_TEXT_SIZE];
+        dig_run_text(store, &run->origin, text);
+        dig_db_fail(db, DIG_EINVAL, "run: packing %zu of %s is there already, expected a new one",
+                    run->origin.packing, text);
     } else if (step != SQLITE_DONE) {
         dig_sql_refuse(db);
     }
@@ -177,8 +162,7 @@ enum dig_status dig_store_commit(struct dig_store *const store, struct dig_error
 }
 
 // All of it or, where the database has failed, nothing.
-static void put_run(struct dig_store *const store, const struct dig_run_origin *const origin,
-                    const struct dig_recording *const recording, const double step_s,
+static void put_run(struct dig_store *const store, const struct dig_run *const run,
                     const uint8_t *const bytes)
 {
     struct dig_db *const db = &store->db;
@@ -186,9 +170,9 @@ static void put_run(struct dig_store *const store, const struct dig_run_origin *
     if (db->status != DIG_OK) {
         return;
     }
-    const sqlite3_int64 ground = make_ground(db, origin);
-    insert_run(store, ground, origin, recording->rows, recording->row[0].t_s, step_s, bytes);
-    dig_entry_refresh(store, ground, origin->trajectory);
+    const sqlite3_int64 ground = make_ground(db, run);
+    insert_run(store, ground, run, bytes);
+    dig_entry_refresh(store, ground, run->origin.trajectory);
     dig_sql_run(db, store->gathers ? "RELEASE run" : "COMMIT");
     if (db->status != DIG_OK) {
         (void)sqlite3_exec(db->sql, store->gathers ? "ROLLBACK TO run; RELEASE run" : "ROLLBACK",
@@ -221,7 +205,9 @@ enum dig_status dig_store_put(struct dig_store *const            store,
     if (bytes == NULL) {
         dig_db_fail(db, DIG_ENOMEM, "no memory for %zu rows", rows);
     } else {
-        put_run(store, origin, recording, step_s, bytes);
+        struct dig_run run  = { *origin, rows, recording->row[0].t_s, step_s, NULL };
+        run.origin.approach = dig_approach_normalized(&origin->approach);
+        put_run(store, &run, bytes);
     }
     free(bytes);
     return db->status;

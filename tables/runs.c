@@ -6,19 +6,43 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-void dig_ground_bind(sqlite3_stmt *const s, const struct dig_run_origin *const origin)
+// How a column stands in a struct dig_run.
+// clang-format off
+#define COLUMN(kind, field) { kind, offsetof(struct dig_run, field), sizeof((struct dig_run *)0)->field }
+static const struct {
+    enum { REAL, COUNT, SEED, TEXT, CURVE } kind;
+    size_t at, size;
+} columns[DIG_RUN_COLUMNS] = {
+    COLUMN(REAL, origin.gravel.value[0]), COLUMN(REAL, origin.gravel.value[1]),
+    COLUMN(REAL, origin.gravel.value[2]), COLUMN(TEXT, origin.effect), COLUMN(REAL, origin.magnitude),
+    COLUMN(REAL, origin.approach.depth), COLUMN(REAL, origin.approach.attack_rad),
+    COLUMN(COUNT, origin.trajectory), COLUMN(COUNT, origin.packing), COLUMN(SEED, origin.seed),
+    COLUMN(TEXT, origin.engine), COLUMN(TEXT, origin.version), COLUMN(COUNT, origin.grains),
+    COLUMN(COUNT, windows), COLUMN(REAL, first_s), COLUMN(REAL, step_s), COLUMN(CURVE, value),
+    COLUMN(TEXT, origin.made_utc), COLUMN(REAL, origin.wall_s),
+};
+// clang-format on
+
+void dig_run_bind(sqlite3_stmt *const s, const int parameter, const enum dig_run_column first,
+                  const enum dig_run_column end, const struct dig_run *const run)
 {
-    for (int a = 0; a < DIG_AXES; a++) {
-        (void)sqlite3_bind_double(s, a + 1, origin->gravel.value[a]);
+    for (int c = (int)first; c < (int)end; c++) {
+        const void *const field = (const char *)run + columns[c].at;
+        const int         to    = parameter + c - (int)first;
+        switch (columns[c].kind) {
+        case REAL: (void)sqlite3_bind_double(s, to, *(const double *)field); break;
+        case COUNT: (void)sqlite3_bind_int64(s, to, (sqlite3_int64) * (const size_t *)field); break;
+        case SEED:
+            (void)sqlite3_bind_int64(s, to, (sqlite3_int64) * (const uint64_t *)field);
+            break;
+        case TEXT: (void)sqlite3_bind_text(s, to, field, -1, SQLITE_STATIC); break;
+        case CURVE: break;
+        }
     }
-    (void)sqlite3_bind_text(s, DIG_AXES + 1, origin->effect, -1, SQLITE_STATIC);
-    (void)sqlite3_bind_double(s, DIG_AXES + 2, origin->magnitude);
-    const struct dig_approach normalized = dig_approach_normalized(&origin->approach);
-    (void)sqlite3_bind_double(s, DIG_AXES + 3, normalized.depth);
-    (void)sqlite3_bind_double(s, DIG_AXES + 4, normalized.attack_rad);
 }
 
 enum dig_status dig_store_has(struct dig_store *const            store,
@@ -26,14 +50,13 @@ enum dig_status dig_store_has(struct dig_store *const            store,
                               struct dig_error *const error)
 {
     assert(store != NULL && origin != NULL && there != NULL);
-    struct dig_db *const db = dig_store_ask(store, error);
-    sqlite3_stmt *const  s  = dig_sql_prepare(
-          db, "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE friction = ?1 "
-                "AND rolling = ?2 AND density_kgpm3 = ?3 AND effect = ?4 AND magnitude = ?5 "
-                "AND depth = ?6 AND attack_rad = ?7 AND packing = ?8 AND trajectory = ?9");
-    dig_ground_bind(s, origin);
-    (void)sqlite3_bind_int64(s, 8, (sqlite3_int64)origin->packing);
-    (void)sqlite3_bind_int64(s, 9, (sqlite3_int64)origin->trajectory);
+    struct dig_db *const db  = dig_store_ask(store, error);
+    struct dig_run       key = { .origin = *origin };
+    key.origin.approach      = dig_approach_normalized(&origin->approach);
+    sqlite3_stmt *const s =
+        dig_sql_prepare(db, "SELECT 1 FROM run JOIN ground g ON g.id = run.ground WHERE "
+                            "(" DIG_KEY_COLUMNS ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
+    dig_run_bind(s, 1, DIG_RUN_FRICTION, DIG_RUN_SEED, &key);
     const bool found = dig_sql_row(db, s);
     if (db->status == DIG_OK) {
         *there = found;
@@ -42,54 +65,61 @@ enum dig_status dig_store_has(struct dig_store *const            store,
     return db->status;
 }
 
-// Copies a text column, cut to fit: provenance is for people. False when it holds what no label
-// may, which an export would take for a field's end.
-static bool column_label(sqlite3_stmt *const s, const int column, const size_t size,
-                         char text[const])
+bool dig_run_read(sqlite3_stmt *const s, const enum dig_run_column end, struct dig_run *const run)
 {
-    const char *const found = (const char *)sqlite3_column_text(s, column);
-    (void)snprintf(text, size, "%s", found != NULL ? found : "");
-    return text[0] == '\0' || dig_label_ok(found);
+    bool        labels = true;
+    const char *text   = NULL;
+    for (int c = 0; c < (int)end; c++) {
+        void *const field = (char *)run + columns[c].at;
+        switch (columns[c].kind) {
+        case REAL: *(double *)field = sqlite3_column_double(s, c); break;
+        case COUNT: *(size_t *)field = (size_t)sqlite3_column_int64(s, c); break;
+        case SEED: *(uint64_t *)field = (uint64_t)sqlite3_column_int64(s, c); break;
+        case TEXT:
+            // Cut to fit: provenance is for people. What no label may hold, an export would take
+            // for a field's end.
+            text = (const char *)sqlite3_column_text(s, c);
+            (void)snprintf(field, columns[c].size, "%s", text != NULL ? text : "");
+            labels = labels && (text == NULL || text[0] == '\0' || dig_label_ok(text));
+            break;
+        case CURVE: break;
+        }
+    }
+    return labels;
 }
 
-#define RUN_COLUMNS                                                                                \
-    "friction, rolling, density_kgpm3, packing, trajectory, seed, engine, version, grains, "       \
-    "wall_s, made_utc, windows, first_s, step_s, curve, effect, magnitude, depth, attack_rad"
+void dig_run_text(const struct dig_store *const store, const struct dig_run_origin *const origin,
+                  char text[const DIG_RUN_TEXT_SIZE])
+{
+    const struct dig_table_head *const head = &store->head;
+    const double *const                v    = origin->gravel.value;
+    char                               how[DIG_APPROACH_TEXT_SIZE];
+    dig_approach_text(&origin->approach, how);
+    (void)snprintf(
+        text, DIG_RUN_TEXT_SIZE, "friction %g, rolling %g, %g kg/m3%s%s on %s%s", v[0], v[1], v[2],
+        origin->effect[0] != '\0' ? " with " : "", origin->effect,
+        origin->trajectory < head->trajectories ? head->trajectory[origin->trajectory].name : "?",
+        how);
+}
 
-// The row a statement over RUN_COLUMNS stands on. Returns run->value, malloc'ed; NULL where it
-// fails.
+// The row a statement over DIG_KEY_COLUMNS and DIG_MADE_COLUMNS stands on. Returns run->value,
+// malloc'ed; NULL where it fails.
 static float *read_run(struct dig_db *const db, const struct dig_table_head *const head,
                        sqlite3_stmt *const s, struct dig_run *const run)
 {
-    struct dig_run_origin *const o = &run->origin;
-    for (int a = 0; a < DIG_AXES; a++) {
-        o->gravel.value[a] = sqlite3_column_double(s, a);
-    }
-    const sqlite3_int64 packing    = sqlite3_column_int64(s, 3);
-    const sqlite3_int64 trajectory = sqlite3_column_int64(s, 4);
-    const sqlite3_int64 windows    = sqlite3_column_int64(s, 11);
-    o->packing                     = (size_t)packing;
-    o->trajectory                  = (size_t)trajectory;
-    o->seed                        = (uint64_t)sqlite3_column_int64(s, 5);
-    bool labels                    = column_label(s, 6, sizeof o->engine, o->engine);
-    labels                         = column_label(s, 7, sizeof o->version, o->version) && labels;
-    labels                         = column_label(s, 10, sizeof o->made_utc, o->made_utc) && labels;
-    labels                         = column_label(s, 15, sizeof o->effect, o->effect) && labels;
-    o->grains                      = (size_t)sqlite3_column_int64(s, 8);
-    o->wall_s                      = sqlite3_column_double(s, 9);
-    o->magnitude                   = sqlite3_column_double(s, 16);
-    o->approach =
-        (struct dig_approach){ sqlite3_column_double(s, 17), sqlite3_column_double(s, 18) };
-    run->first_s = sqlite3_column_double(s, 12);
-    run->step_s  = sqlite3_column_double(s, 13);
+    const struct dig_run_origin *const o          = &run->origin;
+    const bool                         labels     = dig_run_read(s, DIG_RUN_COLUMNS, run);
+    const sqlite3_int64                packing    = (sqlite3_int64)o->packing;
+    const sqlite3_int64                trajectory = (sqlite3_int64)o->trajectory;
+    const sqlite3_int64                windows    = (sqlite3_int64)run->windows;
     if (!labels) {
         dig_db_fail(db, DIG_EINVAL,
                     "run: engine \"%s\", version \"%s\", made_utc \"%s\", expected " DIG_LABEL_RULE,
                     o->engine, o->version, o->made_utc);
         return NULL;
     }
-    const uint8_t *const bytes = sqlite3_column_blob(s, 14);
-    const int            size  = sqlite3_column_bytes(s, 14);
+    const uint8_t *const bytes = sqlite3_column_blob(s, DIG_RUN_CURVE);
+    const int            size  = sqlite3_column_bytes(s, DIG_RUN_CURVE);
     if (packing < 0 || trajectory < 0 || trajectory >= (sqlite3_int64)head->trajectories ||
         windows < 2 || windows > DIG_WINDOWS_MAX || size != (int)windows * DIG_CHANNELS * 4 ||
         !(run->step_s > 0.0) || !isfinite(run->step_s) || !isfinite(run->first_s)) {
@@ -99,7 +129,6 @@ static float *read_run(struct dig_db *const db, const struct dig_table_head *con
                     size, (long long)windows, run->first_s, run->step_s, DIG_CHANNELS * 4);
         return NULL;
     }
-    run->windows      = (size_t)windows;
     float *const into = malloc(run->windows * DIG_CHANNELS * sizeof *into);
     if (into == NULL) {
         dig_db_fail(db, DIG_ENOMEM, "no memory");
@@ -117,9 +146,10 @@ void dig_sql_walk(struct dig_db *const db, const struct dig_table_head *const he
                   const char *const which, const struct dig_run_visitor *const visitor)
 {
     char      sql[500];
-    const int length =
-        snprintf(sql, sizeof sql,
-                 "SELECT " RUN_COLUMNS " FROM run JOIN ground g ON g.id = run.ground %s", which);
+    const int length = snprintf(sql, sizeof sql,
+                                "SELECT " DIG_KEY_COLUMNS ", " DIG_MADE_COLUMNS
+                                " FROM run JOIN ground g ON g.id = run.ground %s",
+                                which);
     assert(length > 0 && (size_t)length < sizeof sql);
     (void)length;
     sqlite3_stmt *const s = dig_sql_prepare(db, sql);
@@ -139,10 +169,7 @@ enum dig_status dig_store_walk(struct dig_store *const             store,
                                struct dig_error *const             error)
 {
     assert(store != NULL && visitor != NULL);
-    dig_sql_walk(dig_store_ask(store, error), &store->head,
-                 "ORDER BY friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad, "
-                 "trajectory, packing",
-                 visitor);
+    dig_sql_walk(dig_store_ask(store, error), &store->head, "ORDER BY " DIG_KEY_COLUMNS, visitor);
     return store->db.status;
 }
 

@@ -44,9 +44,33 @@ struct dig_curve_set *dig_sql_load(struct dig_db *db, const struct dig_table_hea
 void dig_sql_load_covariance(struct dig_db *db, const struct dig_table_head *head,
                              struct dig_curve_set *set);
 
-/// Binds the parameters 1 … 7 of a statement to friction, rolling, density, effect, magnitude,
-/// depth and attack.
-void dig_ground_bind(sqlite3_stmt *s, const struct dig_run_origin *origin);
+/// The columns of a run, with its ground's, in the order of enum dig_run_column.
+#define DIG_GROUND_COLUMNS "friction, rolling, density_kgpm3, effect, magnitude, depth, attack_rad"
+#define DIG_KEY_COLUMNS    DIG_GROUND_COLUMNS ", trajectory, packing"
+#define DIG_MADE_COLUMNS                                                                           \
+    "seed, engine, version, grains, windows, first_s, step_s, curve, made_utc, wall_s"
+
+enum dig_run_column {
+    DIG_RUN_FRICTION,
+    DIG_RUN_TRAJECTORY = 7, // before it the ground
+    DIG_RUN_SEED       = 9, // before it the key
+    DIG_RUN_CURVE      = 16,
+    DIG_RUN_COLUMNS    = 19
+};
+
+/// Binds these columns of a run to parameters of a statement, from `parameter` on. Its curve is not
+/// bound, and the run must outlive that.
+void dig_run_bind(sqlite3_stmt *s, int parameter, enum dig_run_column first,
+                  enum dig_run_column end, const struct dig_run *run);
+
+/// Reads the columns before `end` from the row a statement over them stands on, but not the curve.
+/// False where a text is no label.
+bool dig_run_read(sqlite3_stmt *s, enum dig_run_column end, struct dig_run *run);
+
+/// "friction 0.5, rolling 0.5, 2500 kg/m3 with cohesion on simpleA, depth 1.2, attack 0 deg".
+#define DIG_RUN_TEXT_SIZE 256
+void dig_run_text(const struct dig_store *store, const struct dig_run_origin *origin,
+                  char text[DIG_RUN_TEXT_SIZE]);
 
 /// Visits the runs that `which`, the end of a statement over `run` and `ground`, says.
 void dig_sql_walk(struct dig_db *db, const struct dig_table_head *head, const char *which,
