@@ -48,8 +48,8 @@ struct chamber {
     size_t readings, beyond;
 };
 
-static struct chamber read_chamber(const struct dig_machine_recording *const recording, const size_t signal,
-                           const double relief_Pa)
+static struct chamber read_chamber(const struct dig_machine_recording *const recording,
+                                   const size_t signal, const double relief_Pa)
 {
     struct chamber c = { INFINITY, -INFINITY, 0, 0 };
     for (size_t i = 0; i < recording->rows; i++) {

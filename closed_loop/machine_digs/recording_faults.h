@@ -1,7 +1,7 @@
-// What a recording of a machine may have wrong, so that whoever takes it is told a bucket of another
-// gravel: a joint that is elsewhere from one sample to the next (recordings put together in one
-// file, or a sensor that lost its zero), pressures in another unit or of dead sensors, and pressures
-// that a sensor or a relief valve cut off.
+// What a recording of a machine may have wrong, so that whoever takes it is told a bucket of
+// another gravel: a joint that is elsewhere from one sample to the next (recordings put together in
+// one file, or a sensor that lost its zero), pressures in another unit or of dead sensors, and
+// pressures that a sensor or a relief valve cut off.
 
 #ifndef DIG_CLOSED_LOOP_MACHINE_DIGS_RECORDING_FAULTS_H
 #define DIG_CLOSED_LOOP_MACHINE_DIGS_RECORDING_FAULTS_H
