@@ -65,6 +65,9 @@ static void take_recording(const char *const yaml, const size_t i,
                 "%s: \"%s\" is no regular file, expected one", key, name);
     dig_require(c, dig_name_ok(r->trajectory),
                 "recordings[%zu].trajectory: \"%s\", expected " DIG_NAME_RULE, i, r->trajectory);
+    (void)snprintf(key, sizeof key, "recordings[%zu].pass", i);
+    dig_require(c, r->pass > 0 || dig_yaml_line(yaml, key) == 0,
+                "%s: 0, expected 1 where the place is dug for the first time, then 2 …", key);
     r->pass = r->pass == 0 ? 1 : r->pass;
 }
 

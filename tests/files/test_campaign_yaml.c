@@ -48,6 +48,8 @@ TEST(what_a_campaign_cannot_be_is_refused_with_file_line_and_key)
         { "scene: s.yaml\nrecordings:\n  - {file: a.csv, trajectory: t}\n", "role" },
         { "scene: s.yaml\nrecordings:\n  - {file: a, trajectory: t, role: fit, pass: -1}\n",
           "pass" },
+        { "scene: s.yaml\nrecordings:\n  - {file: a, trajectory: t, role: fit, pass: 0}\n",
+          "campaign.yaml:3: recordings[0].pass: 0, expected 1 where" },
         { "scene: s.yaml\nweather: fine\n" ONE, "weather" },
         { "scene: [a, b]\n" ONE, "scene" },
         { "scene: s.yaml\nrecordings:\n  - {file: a, trajectory: "
