@@ -140,12 +140,15 @@ static inline bool air_move(const char *const name, struct dig_machine *const ma
 }
 
 /// Gives the moved machine seals that rub with a share of the largest push of their drive where its
-/// rod moves.
+/// rod moves. stand: they bend .2 mm before they slip and stay bent, so that a rod that stands is
+/// held by all that it rubbed with, or by less; else they hold none.
 static inline void air_rub(const struct dig_machine *const machine,
-                           struct dig_rig_track *const track, const double share)
+                           struct dig_rig_track *const track, const double share, const bool stand)
 {
-    static const double still_mps        = 0.001; // slower, a part of it
-    double              at_m[DIG_JOINTS] = { 0.0 };
+    static const double still_mps          = 0.001; // slower, a part of it
+    static const double bend_m             = 2e-4;
+    double              at_m[DIG_JOINTS]   = { 0.0 };
+    double              bent_m[DIG_JOINTS] = { 0.0 };
     for (size_t i = 0; i < track->rows; i++) {
         struct dig_rig_row *const row = &track->row[i];
         struct dig_rig_pushes     pushes;
@@ -159,10 +162,13 @@ static inline void air_rub(const struct dig_machine *const machine,
                 DIG_OK) {
                 abort();
             }
-            const double mps = i > 0 ? (at_m[j] - before_m) / track->step_s : 0.0;
-            pushes.N[j]      = c->count *
+            const double way_m = i > 0 ? at_m[j] - before_m : 0.0;
+            bent_m[j]          = fmin(fmax(bent_m[j] + way_m, -bend_m), bend_m);
+            const double rubs  = stand ? bent_m[j] / bend_m
+                                       : fmin(fmax(way_m / (track->step_s * still_mps), -1.0), 1.0);
+            pushes.N[j]        = c->count *
                           (row->pressures.head_Pa[j] * head_m2 - row->pressures.rod_Pa[j] * rod_m2 +
-                           share * c->relief_Pa * head_m2 * fmin(fmax(mps / still_mps, -1.0), 1.0));
+                           share * c->relief_Pa * head_m2 * rubs);
         }
         dig_rig_work_pressures(machine, &pushes, &row->pressures);
     }

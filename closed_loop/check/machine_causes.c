@@ -184,9 +184,15 @@ static double evidence(void *const context, const unsigned named)
     return (named & ~w->asked) == 0 ? solve(w, named, DIG_FIT_NOTHING) : -(double)INFINITY;
 }
 
-// Sums the equations where the lines stand; s2 by what everything together leaves.
-static void take_slopes(struct work *const w)
+// Sums the equations where the lines stand; s2 by what everything together leaves. A rod that
+// stands may be held by what it rubs with at other values.
+static void take_slopes(struct work *const w, const double rubs_at[])
 {
+    double stood[DIG_LINES_COLUMNS_MAX];
+    memcpy(stood, w->fit.lines.at, w->fit.lines.columns * sizeof stood[0]);
+    memmove(w->fit.lines.at, rubs_at, w->fit.lines.columns * sizeof stood[0]);
+    (void)dig_lines_judge(&w->fit.lines);
+    memcpy(w->fit.lines.at, stood, w->fit.lines.columns * sizeof stood[0]);
     dig_lines_update(&w->fit.lines, DIG_LINES_ALL);
     dig_fit_sum(&w->fit, NULL);
 }
@@ -198,14 +204,14 @@ static unsigned find(struct work *const w)
     unsigned                 named  = 0;
     struct dig_machine_noise noise;
     double                   widths[DIG_LINES_COLUMNS_MAX];
-    take_slopes(w);
+    take_slopes(w, w->fit.lines.at);
     // Rows of valves that hunt scatter more than their sensors.
     (void)solve(w, (1U << DIG_CAUSES) - 1U, DIG_FIT_VALUES);
     dig_machine_noise_tell(&w->fit.lines, w->fit.at, &noise);
     (void)dig_machine_noise_widen(&noise, w->air);
     for (int round = 0; round < ROUNDS; round++) {
         const unsigned before = named;
-        take_slopes(w);
+        take_slopes(w, w->fit.at);
         named = dig_greedy_select(&causes, 0);
         (void)solve(w, named, DIG_FIT_VALUES);
         dig_fit_widths(&w->fit, named, 1.0, widths);
@@ -214,7 +220,7 @@ static unsigned find(struct work *const w)
             break;
         }
     }
-    take_slopes(w);
+    take_slopes(w, w->fit.lines.at);
     return named;
 }
 
@@ -311,7 +317,7 @@ static void rests(const struct work *const w, const double at[], double rms[DIG_
     double        count[DIG_JOINTS]  = { 0.0 };
     dig_lines_rest(&w->fit.lines, at, rest);
     for (size_t r = 0; r < w->air->rows; r++) {
-        sum[w->air->row[r].joint] += rest[r] * rest[r];
+        sum[w->air->row[r].joint] += pow(w->fit.lines.trust[r] * rest[r], 2.0);
         sum_N2[w->air->row[r].joint] += pow(rest[r] * w->air->row[r].sigma_N, 2.0);
         count[w->air->row[r].joint] += 1.0;
     }

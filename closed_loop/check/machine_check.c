@@ -96,14 +96,15 @@ static struct dig_check_item *check_cause(const struct dig_cause *const cause, c
                                           struct dig_machine_air_check *const check,
                                           const enum dig_check_question question, const int joint)
 {
-    // A zero that the reading took off in whole steps is wrong whatever the fit adds to it.
-    const bool   named  = cause->named || fabs(coarse) > 0.0;
-    const double value  = cause->value + coarse;
-    const double excess = fabs(value) / hypot(cause->sigma, cause->tolerance);
+    // Of a zero that the reading took off in whole steps the fit may give all back.
+    const bool   stepped = fabs(coarse) > 0.0;
+    const double value   = cause->value + coarse;
+    const double excess  = fabs(value) / hypot(cause->sigma, cause->tolerance);
 
     const enum dig_check_verdict verdict =
-        !asked  ? DIG_CHECK_UNTOLD
-        : named ? DIG_CHECK_WRONG
+        !asked         ? DIG_CHECK_UNTOLD
+        : stepped      ? dig_check_grade(excess, told_sigmas, told_sigmas)
+        : cause->named ? DIG_CHECK_WRONG
         : cause->sigma > vague * cause->tolerance
             ? DIG_CHECK_UNTOLD
             : dig_check_grade(excess, told_sigmas, (double)INFINITY);

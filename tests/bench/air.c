@@ -2,10 +2,10 @@
 // something wrong that is not: every machine that ships, broken in one way at a time, with seeds of
 // sensor noise that no test uses.
 //
-//   build/tests/bench/air [SEEDS [MACHINE [BREAK [FRICTION]]]]
+//   build/tests/bench/air [SEEDS [MACHINE [BREAK [FRICTION [stand]]]]]
 //
 // MACHINE, BREAK: parts of names; with them, line by line. FRICTION: of every drive's seals, as a
-// share of its largest push.
+// share of its largest push; stand: they hold a rod that stands, too.
 
 #include "tests/broken_air.h"
 
@@ -96,6 +96,7 @@ int main(const int argc, char *argv[])
                              .which   = argc > 3 ? argv[3] : "",
                              .loud    = argc > 2 };
     const double   rubs  = argc > 4 ? strtod(argv[4], NULL) : 0.0;
+    const bool     stand = argc > 5 && strcmp(argv[5], "stand") == 0;
     for (size_t m = 0; m < AIR_MACHINES; m++) {
         struct dig_machine   machine;
         struct dig_rig_track track;
@@ -107,7 +108,7 @@ int main(const int argc, char *argv[])
             fprintf(stderr, "%s: %s\n", air_machines[m], error.text);
             return EXIT_FAILURE;
         }
-        air_rub(&machine, &track, rubs);
+        air_rub(&machine, &track, rubs, stand);
         for (uint64_t seed = 0; seed < seeds; seed++) {
             if (!check_all(&bench, air_machines[m], &machine, &track, FIRST_SEED + seed)) {
                 return EXIT_FAILURE;
