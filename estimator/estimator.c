@@ -81,14 +81,12 @@ static void start_path(struct dig_estimator *const e, const struct dig_path_poin
                        const double pitch_rad)
 {
     dig_recorded_dig_contact(e->recording, contact);
-    e->pitched = fabs(pitch_rad) > 0.0;
+    e->frames = fabs(pitch_rad) > 0.0 ? 2 : 1;
     for (size_t t = 0; t < e->set->trajectories; t++) {
-        e->follower[t] =
-            dig_follower_start(&e->route[t], &e->recording->path, e->settings.path_limit_m);
-        if (e->pitched) {
-            e->world[t] = dig_frame_route(&e->route[t], pitch_rad, e->set->tooth_m);
-            e->in_world[t] =
-                dig_follower_start(&e->world[t], &e->recording->path, e->settings.path_limit_m);
+        e->frame[1].route[t] = dig_frame_route(&e->frame[0].route[t], pitch_rad, e->set->tooth_m);
+        for (size_t f = 0; f < e->frames; f++) {
+            e->frame[f].follower[t] = dig_follower_start(&e->frame[f].route[t], &e->recording->path,
+                                                         e->settings.path_limit_m);
         }
     }
 }
@@ -103,16 +101,13 @@ static int choose_trajectory(struct dig_estimator *const        e,
     dig_recorded_dig_follow(e->recording, point, in_soil);
     e->next_follower     = (e->next_follower + 1) % tracks;
     const double limit_m = e->settings.path_limit_m;
-    dig_follower_step(&e->route[e->next_follower], &e->recording->path, limit_m,
-                      &e->follower[e->next_follower]);
-    if (e->pitched) {
-        dig_follower_step(&e->world[e->next_follower], &e->recording->path, limit_m,
-                          &e->in_world[e->next_follower]);
+    for (size_t f = 0; f < e->frames; f++) {
+        dig_follower_step(&e->frame[f].route[e->next_follower], &e->recording->path, limit_m,
+                          &e->frame[f].follower[e->next_follower]);
     }
-
     const struct dig_track *track_of[DIG_TRAJECTORY_MAX];
     for (size_t t = 0; t < tracks; t++) {
-        track_of[t] = dig_estimator_track(e, t);
+        track_of[t] = &e->frame[dig_estimator_frame(e, t)].follower[t].track;
     }
     const int chosen = dig_track_choose(tracks, track_of, limit_m, e->choice.candidate);
     return dig_choice_step(&e->choice, tracks, chosen);
@@ -133,16 +128,17 @@ static void follow_path(struct dig_estimator *const e, const struct dig_path_poi
         e->off_path_m = (double)NAN;
         return;
     }
-    const struct dig_track *const track = dig_estimator_track(e, (size_t)trajectory);
+    const size_t                  t     = (size_t)trajectory;
+    const size_t                  f     = dig_estimator_frame(e, t);
+    const struct dig_track *const track = &e->frame[f].follower[t].track;
 
     // Around the progress of the last tick and of the last vertex in soil.
     const double behind = fmin(fmin(e->progress, 1.0), track->progress) - search_behind;
     const double ahead  = fmax(fmax(e->progress, 0.0), track->progress) + search_ahead;
 
-    const struct dig_path_point at = dig_track_turned(track, point);
-    const struct dig_projection place =
-        dig_route_project(dig_estimator_route(e, (size_t)trajectory), track->dx_m, track->dz_m, &at,
-                          behind, fmin(ahead, 1.0));
+    const struct dig_path_point at    = dig_track_turned(track, point);
+    const struct dig_projection place = dig_route_project(
+        &e->frame[f].route[t], track->dx_m, track->dz_m, &at, behind, fmin(ahead, 1.0));
     e->progress   = place.progress;
     e->off_path_m = place.distance_m;
 }

@@ -24,7 +24,6 @@ struct dig_estimator {
     const struct dig_curve_set   *set;
     struct dig_estimator_settings settings;
     double                        lambda;
-    struct dig_route              route[DIG_TRAJECTORY_MAX];
     struct dig_corrected_machine  corrected; // the machine as a model corrects it
 
     struct dig_rates_filter rates; // of the joints; of a rig's pose
@@ -38,15 +37,17 @@ struct dig_estimator {
     struct dig_phase_state   phase;
     struct dig_motion_state  motion;
     struct dig_recorded_dig *recording; // its samples and path
-    struct dig_follower      follower[DIG_TRAJECTORY_MAX];
-    // The same in the world's frame, of a machine pitched at contact: routes as its own has them.
-    bool                pitched;
-    struct dig_route    world[DIG_TRAJECTORY_MAX];
-    struct dig_follower in_world[DIG_TRAJECTORY_MAX];
-    size_t              next_follower; // the one to be refined next
-    struct dig_choice   choice;        // the trajectory
-    double              progress;
-    double              off_path_m;
+    // Routes and tracks: as the table has them, and in the world's frame, of a machine pitched at
+    // contact, as its own has them. The first routes are fixed at start.
+    struct {
+        struct dig_route    route[DIG_TRAJECTORY_MAX];
+        struct dig_follower follower[DIG_TRAJECTORY_MAX];
+    } frame[2];
+    size_t            frames;        // 2: pitched
+    size_t            next_follower; // the one to be refined next
+    struct dig_choice choice;        // the trajectory
+    double            progress;
+    double            off_path_m;
 
     // of finished digs
     uint32_t                   digs;
@@ -61,12 +62,8 @@ struct dig_estimator {
 /// Drops the dig in progress and waits for contact.
 void dig_estimator_clear_dig(struct dig_estimator *estimator);
 
-/// The track along a trajectory in the frame in which the dig so far lies nearer it, and the route
-/// of that frame.
-const struct dig_track *dig_estimator_track(const struct dig_estimator *estimator,
-                                            size_t                      trajectory);
-const struct dig_route *dig_estimator_route(const struct dig_estimator *estimator,
-                                            size_t                      trajectory);
+/// The frame in which the dig so far lies nearer a trajectory.
+size_t dig_estimator_frame(const struct dig_estimator *estimator, size_t trajectory);
 
 /// Solves the wrench of a sample and places the front. Steps the filter of the rates. DIG_ESTALE,
 /// DIG_EINVAL as dig_estimator_step().

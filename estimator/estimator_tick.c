@@ -26,21 +26,13 @@ bool dig_estimator_is_idle(const struct dig_estimator *const estimator)
     return !estimator->recording->window.open;
 }
 
-static bool lies_in_world(const struct dig_estimator *const e, const size_t t)
-{
-    return e->pitched && e->in_world[t].track.rms_m < e->follower[t].track.rms_m;
-}
-
-const struct dig_track *dig_estimator_track(const struct dig_estimator *const e, const size_t t)
+size_t dig_estimator_frame(const struct dig_estimator *const e, const size_t t)
 {
     assert(e != NULL && t < e->set->trajectories);
-    return lies_in_world(e, t) ? &e->in_world[t].track : &e->follower[t].track;
-}
-
-const struct dig_route *dig_estimator_route(const struct dig_estimator *const e, const size_t t)
-{
-    assert(e != NULL && t < e->set->trajectories);
-    return lies_in_world(e, t) ? &e->world[t] : &e->route[t];
+    return e->frames > 1 &&
+                   e->frame[1].follower[t].track.rms_m < e->frame[0].follower[t].track.rms_m
+               ? 1
+               : 0;
 }
 
 bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
@@ -53,7 +45,9 @@ bool dig_estimator_is_off_table(const struct dig_estimator *const estimator)
         return true;
     }
     for (size_t t = 0; off && t < estimator->set->trajectories; t++) {
-        off = dig_estimator_track(estimator, t)->rms_m > estimator->settings.path_limit_m;
+        const size_t f = dig_estimator_frame(estimator, t);
+
+        off = estimator->frame[f].follower[t].track.rms_m > estimator->settings.path_limit_m;
     }
     return off;
 }
@@ -67,7 +61,7 @@ void dig_estimator_set_table(struct dig_estimator *const       estimator,
     estimator->motion   = (struct dig_motion_state){ .towed = false };
     estimator->lambda   = estimator->machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m;
     for (size_t t = 0; t < set->trajectories; t++) {
-        estimator->route[t] = dig_approach_route(set, t);
+        estimator->frame[0].route[t] = dig_approach_route(set, t);
     }
     dig_estimator_clear_dig(estimator);
 }

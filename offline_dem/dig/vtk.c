@@ -12,27 +12,6 @@
 #define PATH_SIZE 4096
 #define FACETS    6
 
-static FILE *begin(const char *const dir, const char *const what, const size_t frame)
-{
-    char      path[PATH_SIZE];
-    const int length = snprintf(path, sizeof path, "%s/%s_%04zu.vtk", dir, what, frame);
-    if (length < 0 || length >= PATH_SIZE) {
-        return NULL;
-    }
-    FILE *const file = dig_part_open(path);
-    if (file != NULL) {
-        (void)fprintf(file, "# vtk DataFile Version 3.0\n%s, SI units\nASCII\nDATASET POLYDATA\n",
-                      what);
-    }
-    return file;
-}
-
-static enum dig_status end(FILE *const file)
-{
-    const int failed = ferror(file);
-    return fclose(file) != 0 || failed ? DIG_EIO : DIG_OK;
-}
-
 // Force of its neighbours on a grain, with the springs at present.
 struct grain_force {
     double f_N[3];
@@ -72,15 +51,23 @@ static struct grain_force *sum_contact_forces(const struct dig_world *const worl
     return grain_force;
 }
 
+// What the files of one instant show.
+struct picture {
+    const struct dig_world   *world;
+    const struct dig_tool    *tool;
+    const struct grain_force *grain_force; // [grains]
+};
+
 static void begin_scalar(FILE *const file, const char *const name, const char *const type)
 {
     (void)fprintf(file, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", name, type);
 }
 
-static void write_grains(FILE *const file, const struct dig_grains *const grains,
-                         const struct grain_force grain_force[])
+static void write_grains(FILE *const file, const struct picture *const picture)
 {
-    const size_t n = grains->n;
+    const struct dig_grains *const  grains      = &picture->world->grains;
+    const struct grain_force *const grain_force = picture->grain_force;
+    const size_t                    n           = grains->n;
     (void)fprintf(file, "POINTS %zu double\n", n);
     for (size_t i = 0; i < n; i++) {
         const double *const x = grains->motion[i].x_m;
@@ -120,8 +107,9 @@ static void write_grains(FILE *const file, const struct dig_grains *const grains
 }
 
 // Vertex k of the profile stands at 2 k on the right side and at 2 k + 1 on the left.
-static void write_bucket(FILE *const file, const struct dig_tool *const tool)
+static void write_bucket(FILE *const file, const struct picture *const picture)
 {
+    const struct dig_tool *const   tool   = picture->tool;
     const struct dig_bucket *const bucket = &tool->bucket;
     const size_t                   n      = bucket->points;
     (void)fprintf(file, "POINTS %zu double\n", 2 * n);
@@ -171,10 +159,11 @@ static void write_rock_points(FILE *const file, const struct dig_rock_surface *c
     }
 }
 
-static void write_rocks(FILE *const file, const struct dig_obstacles *const obstacles)
+static void write_rocks(FILE *const file, const struct picture *const picture)
 {
-    const size_t side  = FACETS + 1;
-    const size_t faces = 6 * obstacles->rocks;
+    const struct dig_obstacles *const obstacles = &picture->world->bodies->obstacles;
+    const size_t                      side      = FACETS + 1;
+    const size_t                      faces     = 6 * obstacles->rocks;
     (void)fprintf(file, "POINTS %zu double\n", faces * side * side);
     for (size_t r = 0; r < obstacles->rocks; r++) {
         write_rock_points(file, &obstacles->rock[r].surface);
@@ -190,48 +179,44 @@ static void write_rocks(FILE *const file, const struct dig_obstacles *const obst
     }
 }
 
-static enum dig_status write_all_grains(const char *const dir, const size_t frame,
-                                        const struct dig_world *const world)
+static enum dig_status end(FILE *const file)
 {
-    struct grain_force *const grain_force = sum_contact_forces(world);
-    if (grain_force == NULL) {
-        return DIG_ENOMEM;
+    const int failed = ferror(file);
+    return fclose(file) != 0 || failed ? DIG_EIO : DIG_OK;
+}
+
+static enum dig_status write_file(const char *const dir, const char *const what, const size_t frame,
+                                  void (*const write)(FILE *, const struct picture *),
+                                  const struct picture *const picture)
+{
+    char        path[PATH_SIZE];
+    const int   length = snprintf(path, sizeof path, "%s/%s_%04zu.vtk", dir, what, frame);
+    FILE *const file   = length < 0 || length >= PATH_SIZE ? NULL : dig_part_open(path);
+    if (file == NULL) {
+        return DIG_EIO;
     }
-    enum dig_status status = DIG_EIO;
-    FILE *const     file   = begin(dir, "grains", frame);
-    if (file != NULL) {
-        write_grains(file, &world->grains, grain_force);
-        status = end(file);
-    }
-    free(grain_force);
-    return status;
+    (void)fprintf(file, "# vtk DataFile Version 3.0\n%s, SI units\nASCII\nDATASET POLYDATA\n",
+                  what);
+    write(file, picture);
+    return end(file);
 }
 
 enum dig_status dig_vtk_write(const char *const dir, const size_t frame,
                               const struct dig_world *const world,
                               const struct dig_tool *const  tool)
 {
-    const enum dig_status status = write_all_grains(dir, frame, world);
-    if (status != DIG_OK) {
-        return status;
+    struct grain_force *const grain_force = sum_contact_forces(world);
+    if (grain_force == NULL) {
+        return DIG_ENOMEM;
     }
-    FILE *const bucket_file = begin(dir, "bucket", frame);
-    if (bucket_file == NULL) {
-        return DIG_EIO;
+    const struct picture picture = { world, tool, grain_force };
+    enum dig_status      status  = write_file(dir, "grains", frame, write_grains, &picture);
+    status = status == DIG_OK ? write_file(dir, "bucket", frame, write_bucket, &picture) : status;
+    if (status == DIG_OK && dig_bodies_rocks(world->bodies) > 0) {
+        status = write_file(dir, "rocks", frame, write_rocks, &picture);
     }
-    write_bucket(bucket_file, tool);
-    if (end(bucket_file) != DIG_OK) {
-        return DIG_EIO;
-    }
-    if (world->bodies == NULL || world->bodies->obstacles.rocks == 0) {
-        return DIG_OK;
-    }
-    FILE *const rock_file = begin(dir, "rocks", frame);
-    if (rock_file == NULL) {
-        return DIG_EIO;
-    }
-    write_rocks(rock_file, &world->bodies->obstacles);
-    return end(rock_file);
+    free(grain_force);
+    return status;
 }
 
 static enum dig_status write_index(const char *const dir, const char *const what,
@@ -255,9 +240,10 @@ static enum dig_status write_index(const char *const dir, const char *const what
 enum dig_status dig_vtk_index(const char *const dir, const size_t frames, const double step_s,
                               const bool rocks)
 {
-    enum dig_status status = write_index(dir, "grains", frames, step_s);
-    if (status == DIG_OK) {
-        status = write_index(dir, "bucket", frames, step_s);
+    static const char *const what[] = { "grains", "bucket", "rocks" };
+    enum dig_status          status = DIG_OK;
+    for (size_t i = 0; i < (rocks ? 3U : 2U) && status == DIG_OK; i++) {
+        status = write_index(dir, what[i], frames, step_s);
     }
-    return status == DIG_OK && rocks ? write_index(dir, "rocks", frames, step_s) : status;
+    return status;
 }

@@ -4,7 +4,6 @@
 
 #include "offline_dem/dig/checked_pour.h"
 #include "offline_dem/dig/dig.h"
-#include "offline_dem/dig/energy_drift.h"
 
 #define WATCH_s  0.06
 #define SETTLE_s 0.3
