@@ -17,81 +17,54 @@ enum dig_status dig_device_arrays_init(struct dig_device_arrays *const arrays)
 
 void dig_device_arrays_finish(struct dig_device_arrays *const arrays)
 {
-    free(arrays->grains);
-    free(arrays->pairs);
+    free(arrays->memory);
     free(arrays->view.margin_flag);
-    *arrays = (struct dig_device_arrays){ .grains = NULL };
+    *arrays = (struct dig_device_arrays){ .memory = NULL };
 }
 
-// One block of memory for several arrays of so many bytes, each aligned to a cache line; NULL when
-// memory is short.
-static void *allocate(const size_t arrays, const size_t bytes[], void *array[])
-{
-    size_t sum = 0;
-    for (size_t a = 0; a < arrays; a++) {
-        sum += (bytes[a] + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
-    }
-    unsigned char *const block = aligned_alloc(CACHE_LINE, sum);
-    unsigned char       *next  = block;
-    for (size_t a = 0; a < arrays && block != NULL; a++) {
-        array[a] = next;
-        next += (bytes[a] + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
-    }
-    return block;
-}
-
-// Replaces arrays that are too short. Their contents have been downloaded.
-static enum dig_status make_grains_room(struct dig_device_arrays *const o, const size_t n)
-{
-    struct dig_device_view *const v       = &o->view;
-    const size_t                  bytes[] = {
-                         (n + 1) * sizeof *v->load_start,   v->surfaces * (n + 1) * sizeof *v->surface_history,
-                         (n + 1) * sizeof *v->surface_mask, (n + 1) * sizeof *v->surface_load,
-                         (n + 1) * sizeof *v->on_tool,
-    };
-    void *array[5] = { NULL };
-    free(o->grains);
-    o->grains          = allocate(5, bytes, array);
-    o->grain_room      = o->grains != NULL ? n + 1 : 0;
-    o->surface_room    = v->surfaces;
-    v->load_start      = array[0];
-    v->surface_history = array[1];
-    v->surface_mask    = array[2];
-    v->surface_load    = array[3];
-    v->on_tool         = array[4];
-    return o->grains != NULL ? DIG_OK : DIG_ENOMEM;
-}
-
-static enum dig_status make_pairs_room(struct dig_device_arrays *const o, const size_t pairs)
-{
-    struct dig_device_view *const v       = &o->view;
-    const size_t                  room    = pairs + pairs / 8 + 1;
-    const size_t                  bytes[] = {
-                         room * sizeof *v->pair_i,        room * sizeof *v->load_index,
-                         room * sizeof *v->pair_history,  2 * room * sizeof *v->touching,
-                         2 * room * sizeof *v->pair_load,
-    };
-    void *array[5] = { NULL };
-    free(o->pairs);
-    o->pairs        = allocate(5, bytes, array);
-    o->pair_room    = o->pairs != NULL ? room : 0;
-    v->pair_i       = array[0];
-    v->load_index   = array[1];
-    v->pair_history = array[2];
-    v->touching     = array[3];
-    v->pair_load    = array[4];
-    return o->pairs != NULL ? DIG_OK : DIG_ENOMEM;
-}
-
-static enum dig_status make_room(struct dig_device_arrays *const o, const size_t n,
+// Replaces arrays that are too short: one block of memory, in which each is aligned to a cache
+// line. Their contents have been downloaded.
+static enum dig_status make_room(struct dig_device_arrays *const o, const size_t grains,
                                  const size_t pairs)
 {
-    const bool      fits   = o->grain_room >= n + 1 && o->surface_room >= o->view.surfaces;
-    enum dig_status status = fits ? DIG_OK : make_grains_room(o, n);
-    if (status == DIG_OK && o->pair_room < pairs + 1) {
-        status = make_pairs_room(o, pairs);
+    struct dig_device_view *const v = &o->view;
+    if (o->grain_room > grains && o->surface_room >= v->surfaces && o->pair_room > pairs) {
+        return DIG_OK;
     }
-    return status;
+    enum { ARRAYS = 10 };
+    const size_t n             = grains + 1;
+    const size_t p             = pairs + pairs / 8 + 1;
+    const size_t bytes[ARRAYS] = {
+        n * sizeof *v->load_start,   v->surfaces * n * sizeof *v->surface_history,
+        n * sizeof *v->surface_mask, n * sizeof *v->surface_load,
+        n * sizeof *v->on_tool,      p * sizeof *v->pair_i,
+        p * sizeof *v->load_index,   p * sizeof *v->pair_history,
+        2 * p * sizeof *v->touching, 2 * p * sizeof *v->pair_load,
+    };
+    size_t at[ARRAYS + 1] = { 0 };
+    for (size_t a = 0; a < ARRAYS; a++) {
+        at[a + 1] = at[a] + (bytes[a] + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    }
+    free(o->memory);
+    unsigned char *const block = aligned_alloc(CACHE_LINE, at[ARRAYS]);
+    o->memory                  = block;
+    o->grain_room              = block != NULL ? n : 0;
+    if (block == NULL) {
+        return DIG_ENOMEM;
+    }
+    o->surface_room    = v->surfaces;
+    o->pair_room       = p;
+    v->load_start      = (void *)(block + at[0]);
+    v->surface_history = (void *)(block + at[1]);
+    v->surface_mask    = (void *)(block + at[2]);
+    v->surface_load    = (void *)(block + at[3]);
+    v->on_tool         = (void *)(block + at[4]);
+    v->pair_i          = (void *)(block + at[5]);
+    v->load_index      = (void *)(block + at[6]);
+    v->pair_history    = (void *)(block + at[7]);
+    v->touching        = (void *)(block + at[8]);
+    v->pair_load       = (void *)(block + at[9]);
+    return DIG_OK;
 }
 
 // What the members of a crew copy from a world to a view.

@@ -9,7 +9,7 @@
 struct dig_device_arrays {
     struct dig_device_view view;
     struct dig_law         pair_law[DIG_DEVICE_LAWS];
-    void                  *grains, *pairs; // memory of the view's arrays of grains, and of pairs
+    void                  *memory; // of the view's arrays of grains and pairs
     size_t                 grain_room, surface_room, pair_room;
 };
 
