@@ -23,31 +23,12 @@ struct array {
     size_t room;
 };
 
+// Where the view's arrays stand; behind them that of a move.
 enum {
-    TYPE_OF,
-    REFERENCE,
-    PAIR_I,
-    PAIR_J,
-    PAIR_START,
-    LOAD_START,
-    LOAD_INDEX,
-    PAIR_LAW,
-    WALL_LAW,
-    TOOL_LAW,
-    TYPE,
-    SHAPE, // fixed
-    MOTION,
-    PAIR_HISTORY,
-    TOUCHING,
-    PAIR_LOAD,
-    SURFACE_HISTORY,
-    SURFACE_MASK,
-    SURFACE_LOAD,
-    ON_TOOL,
-    CLUMP,
-    MARGIN_FLAG, // state
-    ARRAYS_OF_VIEW,
-    WAS = ARRAYS_OF_VIEW, // of a move
+#define ARRAY(name, count, how) AT_##name,
+    DIG_DEVICE_ARRAYS(ARRAY, )
+#undef ARRAY
+    AT_WAS,
     ARRAYS
 };
 
@@ -122,13 +103,12 @@ card *card_of(dig_device *const device)
     return static_cast<card *>(device->own);
 }
 
-// Allocates an array on the card and copies `from` to it; NULL: uninitialised.
+// Allocates an array on the card and copies `from` to it; NULL: uninitialised. T is a pointer.
 template <typename T>
-cudaError_t place(card *const c, const int which, const size_t count, const T *const from,
-                  T **const to)
+cudaError_t place(card *const c, const int which, const size_t count, const T from, T *const to)
 {
     array *const a     = &c->at[which];
-    const size_t bytes = (count + 1) * sizeof(T);
+    const size_t bytes = (count + 1) * sizeof *from;
     if (a->room < bytes) {
         (void)cudaFree(a->here);
         a->here                = nullptr;
@@ -140,69 +120,30 @@ cudaError_t place(card *const c, const int which, const size_t count, const T *c
         }
         a->room = more;
     }
-    *to = static_cast<T *>(a->here);
+    *to = static_cast<T>(a->here);
     return from == nullptr || count == 0 ? cudaSuccess
-                                         : cudaMemcpyAsync(a->here, from, count * sizeof(T),
+                                         : cudaMemcpyAsync(a->here, from, count * sizeof *from,
                                                            cudaMemcpyHostToDevice, c->stream);
-}
-
-template <typename T>
-cudaError_t place_const(card *const c, const int which, const size_t count, const T *const from,
-                        const T **const to)
-{
-    T                *there = nullptr;
-    const cudaError_t e     = place(c, which, count, from, &there);
-    *to                     = there;
-    return e;
 }
 
 // Places a view's arrays on the card; where the state of grains and contacts is carried over, only
 // room for it.
 dig_status place_view(card *const c, const dig_device_view *const v, const bool carried)
 {
-    dig_device_view *const w    = &c->view;
-    const size_t           n    = v->n;
-    const size_t           p    = v->pairs;
-    c->host_view                = *v;
-    w->n                        = v->n;
-    w->pairs                    = v->pairs;
-    w->clumps                   = v->clumps;
-    w->walls                    = v->walls;
-    w->plates                   = v->plates;
-    w->surfaces                 = v->surfaces;
-    const double     *at        = nullptr;
-    const cudaError_t e[ARRAYS_OF_VIEW] = {
-        place_const(c, TYPE_OF, n, v->type_of, &w->type_of),
-        place_const(c, REFERENCE, 4 * n, &v->reference_m[0][0], &at),
-        place(c, PAIR_I, p, carried ? nullptr : v->pair_i, &w->pair_i),
-        place_const(c, PAIR_J, p, v->pair_j, &w->pair_j),
-        place_const(c, PAIR_START, n + 1, v->pair_start, &w->pair_start),
-        place(c, LOAD_START, n + 1, v->load_start, &w->load_start),
-        place(c, LOAD_INDEX, p, v->load_index, &w->load_index),
-        place_const(c, PAIR_LAW, DIG_DEVICE_LAWS, v->pair_law, &w->pair_law),
-        place_const(c, WALL_LAW, DIG_GRAIN_TYPES_MAX, v->wall_law, &w->wall_law),
-        place_const(c, TOOL_LAW, DIG_GRAIN_TYPES_MAX, v->tool_law, &w->tool_law),
-        place_const(c, TYPE, DIG_GRAIN_TYPES_MAX, v->type, &w->type),
-        place_const(c, SHAPE, v->shape == nullptr ? 0 : 1, v->shape, &w->shape),
-        place(c, MOTION, n, carried ? nullptr : v->motion, &w->motion),
-        place(c, PAIR_HISTORY, p, carried ? nullptr : v->pair_history, &w->pair_history),
-        place(c, TOUCHING, 2 * p, carried ? nullptr : v->touching, &w->touching),
-        place(c, PAIR_LOAD, 2 * p, static_cast<const dig_load *>(nullptr), &w->pair_load),
-        place(c, SURFACE_HISTORY, v->surfaces * n, carried ? nullptr : v->surface_history,
-              &w->surface_history),
-        place(c, SURFACE_MASK, n, carried ? nullptr : v->surface_mask, &w->surface_mask),
-        place(c, SURFACE_LOAD, n, static_cast<const dig_load *>(nullptr), &w->surface_load),
-        place(c, ON_TOOL, n, static_cast<const dig_wrench *>(nullptr), &w->on_tool),
-        place(c, CLUMP, v->clumps, v->clump, &w->clump),
-        place(c, MARGIN_FLAG, DIG_MARGIN_FLAGS, v->margin_flag, &w->margin_flag),
-    };
-    w->reference_m = reinterpret_cast<const double(*)[4]>(at);
-    for (int a = 0; a < ARRAYS_OF_VIEW; a++) {
-        if (e[a] != cudaSuccess) {
-            return status_of(e[a]);
-        }
+    dig_device_view *const w = &c->view;
+    cudaError_t            e = cudaSuccess;
+    c->host_view             = *v;
+    *w                       = *v;
+#define ARRAY(name, count, how)                                                                    \
+    if (e == cudaSuccess) {                                                                        \
+        const bool given = (how) == DIG_DEVICE_GIVEN || ((how) == DIG_DEVICE_KEPT && !carried);    \
+        e                = place(c, AT_##name, count, given ? v->name : nullptr, &w->name);        \
     }
-    return status_of(cudaMemsetAsync(w->on_tool, 0, n * sizeof *w->on_tool, c->stream));
+    DIG_DEVICE_ARRAYS(ARRAY, v)
+#undef ARRAY
+    return status_of(e == cudaSuccess
+                         ? cudaMemsetAsync(w->on_tool, 0, v->n * sizeof *w->on_tool, c->stream)
+                         : e);
 }
 
 dig_status upload(dig_device *const device, const dig_device_view *const v)
@@ -223,7 +164,7 @@ dig_status relist(dig_device *const device, const dig_device_view *const v,
     if (status != DIG_OK || v->n == 0) {
         return status;
     }
-    const cudaError_t e = place_const(c, WAS, v->n, move->was, &there.was);
+    const cudaError_t e = place(c, AT_WAS, v->n, move->was, &there.was);
     if (e != cudaSuccess) {
         return status_of(e);
     }

@@ -61,10 +61,40 @@ struct dig_device_view {
     struct dig_contact_history *surface_history; // [surfaces][n]
     uint64_t                   *surface_mask;    // [n] bit s: touches surface s
     struct dig_load            *surface_load;    // [n] from walls, tool and rocks
-    struct dig_wrench          *on_tool; // [n] wrench of each grain on the tool, summed over steps
-    struct dig_clump_body      *clump;   // [clumps]
-    uint32_t                   *margin_flag; // [DIG_MARGIN_FLAGS] set when some grain …
+    struct dig_wrench          *on_tool; // [n] wrench of each grain on the tool, summed over steps;
+                                         // zero at first
+    struct dig_clump_body *clump;        // [clumps]
+    uint32_t              *margin_flag;  // [DIG_MARGIN_FLAGS] set when some grain …
 };
+
+/// What a device's array holds at first: what the view's does; the same, but at a relist() what the
+/// device carries over; what the device makes.
+enum dig_device_array { DIG_DEVICE_GIVEN, DIG_DEVICE_KEPT, DIG_DEVICE_MADE };
+
+/// The arrays of a view v and their lengths, for those who copy them.
+#define DIG_DEVICE_ARRAYS(array, v)                                                                \
+    array(type_of, (v)->n, DIG_DEVICE_GIVEN) array(reference_m, (v)->n, DIG_DEVICE_GIVEN)          \
+        array(pair_i, (v)->pairs, DIG_DEVICE_KEPT) array(pair_j, (v)->pairs, DIG_DEVICE_GIVEN)     \
+            array(pair_start, (v)->n + 1, DIG_DEVICE_GIVEN) array(load_start, (v)->n + 1,          \
+                                                                  DIG_DEVICE_GIVEN)                \
+                array(load_index, (v)->pairs, DIG_DEVICE_GIVEN) array(pair_law, DIG_DEVICE_LAWS,   \
+                                                                      DIG_DEVICE_GIVEN)            \
+                    array(wall_law, DIG_GRAIN_TYPES_MAX,                                           \
+                          DIG_DEVICE_GIVEN) array(tool_law, DIG_GRAIN_TYPES_MAX, DIG_DEVICE_GIVEN) \
+                        array(type, DIG_GRAIN_TYPES_MAX, DIG_DEVICE_GIVEN)                         \
+                            array(shape, (v)->shape == NULL ? 0 : 1,                               \
+                                  DIG_DEVICE_GIVEN) array(motion, (v)->n, DIG_DEVICE_KEPT)         \
+                                array(pair_history, (v)->pairs, DIG_DEVICE_KEPT)                   \
+                                    array(touching, (size_t)2 * (v)->pairs, DIG_DEVICE_KEPT)       \
+                                        array(pair_load, (size_t)2 * (v)->pairs, DIG_DEVICE_MADE)  \
+                                            array(surface_history, (size_t)(v)->surfaces *(v)->n,  \
+                                                  DIG_DEVICE_KEPT) array(surface_mask, (v)->n,     \
+                                                                         DIG_DEVICE_KEPT)          \
+                                                array(surface_load, (v)->n, DIG_DEVICE_MADE)       \
+                                                    array(on_tool, (v)->n, DIG_DEVICE_MADE) array( \
+                                                        clump, (v)->clumps, DIG_DEVICE_GIVEN)      \
+                                                        array(margin_flag, DIG_MARGIN_FLAGS,       \
+                                                              DIG_DEVICE_GIVEN)
 
 /// From old lists to new ones.
 struct dig_device_move {

@@ -55,33 +55,16 @@ static void *place(struct memory *const m, const void *const from, const size_t 
 // The view's arrays; the state of grains and contacts where it is not carried over.
 static struct memory copy_of(const struct dig_device_view *const v, const bool carried)
 {
-    const size_t  n        = v->n;
-    const size_t  p        = v->pairs;
-    const size_t  surfaces = v->surfaces;
-    struct memory m        = { .view = *v };
-    m.view.type_of         = place(&m, v->type_of, n * sizeof *v->type_of);
-    m.view.reference_m     = place(&m, v->reference_m, n * sizeof *v->reference_m);
-    m.view.pair_i          = place(&m, carried ? NULL : v->pair_i, p * sizeof *v->pair_i);
-    m.view.pair_j          = place(&m, v->pair_j, p * sizeof *v->pair_j);
-    m.view.pair_start      = place(&m, v->pair_start, (n + 1) * sizeof *v->pair_start);
-    m.view.load_start      = place(&m, v->load_start, (n + 1) * sizeof *v->load_start);
-    m.view.load_index      = place(&m, v->load_index, p * sizeof *v->load_index);
-    m.view.pair_law        = place(&m, v->pair_law, DIG_DEVICE_LAWS * sizeof *v->pair_law);
-    m.view.wall_law        = place(&m, v->wall_law, DIG_GRAIN_TYPES_MAX * sizeof *v->wall_law);
-    m.view.tool_law        = place(&m, v->tool_law, DIG_GRAIN_TYPES_MAX * sizeof *v->tool_law);
-    m.view.type            = place(&m, v->type, DIG_GRAIN_TYPES_MAX * sizeof *v->type);
-    m.view.shape           = place(&m, v->shape, v->shape == NULL ? 0 : sizeof *v->shape);
-    m.view.motion          = place(&m, carried ? NULL : v->motion, n * sizeof *v->motion);
-    m.view.pair_history = place(&m, carried ? NULL : v->pair_history, p * sizeof *v->pair_history);
-    m.view.touching     = place(&m, carried ? NULL : v->touching, 2 * p * sizeof *v->touching);
-    m.view.pair_load    = place(&m, NULL, 2 * p * sizeof *v->pair_load);
-    m.view.surface_history =
-        place(&m, carried ? NULL : v->surface_history, surfaces * n * sizeof *v->surface_history);
-    m.view.surface_mask = place(&m, carried ? NULL : v->surface_mask, n * sizeof *v->surface_mask);
-    m.view.surface_load = place(&m, NULL, n * sizeof *v->surface_load);
-    m.view.on_tool      = place(&m, v->on_tool, n * sizeof *v->on_tool);
-    m.view.clump        = place(&m, v->clump, v->clumps * sizeof *v->clump);
-    m.view.margin_flag  = place(&m, v->margin_flag, DIG_MARGIN_FLAGS * sizeof *v->margin_flag);
+    struct memory m = { .view = *v };
+#define ARRAY(name, count, how)                                                                    \
+    m.view.name = place(                                                                           \
+        &m, (how) == DIG_DEVICE_GIVEN || ((how) == DIG_DEVICE_KEPT && !carried) ? v->name : NULL,  \
+        (count) * sizeof *v->name);
+    DIG_DEVICE_ARRAYS(ARRAY, v)
+#undef ARRAY
+    if (m.view.on_tool != NULL) {
+        memset(m.view.on_tool, 0, v->n * sizeof *v->on_tool);
+    }
     return m;
 }
 
