@@ -78,19 +78,6 @@ static const enum dig_check_question question_of[DIG_CAUSE_KINDS] = {
     [DIG_CAUSE_WEIGHT] = DIG_CHECK_WEIGHT,
 };
 
-static struct dig_check_item *item_of(struct dig_machine_air_check *const check, const int cause)
-{
-    const bool                    late = cause == (int)DIG_CAUSE_DELAY;
-    const enum dig_check_question question =
-        late ? DIG_CHECK_DELAY : question_of[cause / DIG_JOINTS];
-
-    struct dig_check_item *item = check->item;
-    while (item->question != question || (!late && item->of != cause % DIG_JOINTS)) {
-        item++;
-    }
-    return item;
-}
-
 static struct dig_check_item *check_cause(const struct dig_cause *const cause, const bool asked,
                                           const double                        coarse,
                                           struct dig_machine_air_check *const check,
@@ -119,6 +106,7 @@ static void check_causes(const struct dig_machine *const machine,
                          const struct dig_causes *const causes, const bool moves[DIG_JOINTS],
                          struct dig_machine_air_check *const check)
 {
+    const size_t first = check->items; // a line for each cause, in their order
     for (size_t kind = 0; kind < DIG_CAUSE_KINDS; kind++) {
         for (size_t j = 0; j < DIG_JOINTS; j++) {
             const struct dig_cylinder *const cylinder = &machine->cylinder[j];
@@ -136,40 +124,29 @@ static void check_causes(const struct dig_machine *const machine,
     for (size_t k = 0; k < DIG_CAUSES; k++) {
         const int or_cause = causes->cause[k].or_cause;
         if (causes->cause[k].named && or_cause >= 0) {
-            struct dig_check_item *const mine  = item_of(check, (int)k);
-            struct dig_check_item *const other = item_of(check, or_cause);
-            mine->or_item                      = (int)(other - check->item);
-            other->or_item                     = (int)(mine - check->item);
-            other->verdict                     = DIG_CHECK_DOUBTFUL;
+            const size_t other             = first + (size_t)or_cause;
+            check->item[first + k].or_item = (int)other;
+            check->item[other].or_item     = (int)(first + k);
+            check->item[other].verdict     = DIG_CHECK_DOUBTFUL;
         }
     }
 }
 
-// What the drives push and would have to, in one piece at *drive_N.
+// What the drives push and would have to, and when, in one piece at *drive_N.
 static enum dig_status draw(const struct dig_air *const        air,
                             const struct dig_correction *const correction, double **const drive_N,
-                            double **const load_N)
+                            double **const load_N, double **const time_s)
 {
     const size_t n = DIG_JOINTS * air->points;
-    *drive_N       = malloc((2 * n + 1) * sizeof **drive_N);
+    *drive_N       = malloc((2 * n + air->points + 1) * sizeof **drive_N);
     if (*drive_N == NULL) {
         return DIG_ENOMEM;
     }
     *load_N = *drive_N + n;
+    *time_s = *load_N + n;
     dig_air_forces(air, correction, *drive_N, *load_N);
-    return DIG_OK;
-}
-
-static enum dig_status keep_times(const struct dig_air *const    air,
-                                  struct dig_check_curves *const curves)
-{
-    curves->time_s = malloc((air->points + 1) * sizeof *curves->time_s);
-    if (curves->time_s == NULL) {
-        return DIG_ENOMEM;
-    }
-    curves->points = air->points;
     for (size_t p = 0; p < air->points; p++) {
-        curves->time_s[p] = 1e-9 * (double)(air->point[p].sample.time_ns);
+        (*time_s)[p] = 1e-9 * (double)(air->point[p].sample.time_ns);
     }
     return DIG_OK;
 }
@@ -251,10 +228,9 @@ static enum dig_status read_plain(const struct dig_machine *const           mach
         status = dig_reading_find(machine, &air, degrees, moves, &check->reading);
     }
     if (status == DIG_OK) {
-        status = keep_times(&air, &check->curves);
-    }
-    if (status == DIG_OK) {
-        status = draw(&air, &none, &check->curves.drive_N, &check->curves.load_N);
+        check->curves.points = air.points;
+        status =
+            draw(&air, &none, &check->curves.drive_N, &check->curves.load_N, &check->curves.time_s);
     }
     dig_air_finish(&air);
     dig_machine_dig_finish(&dig);
@@ -286,8 +262,9 @@ static enum dig_status read_best(const struct dig_machine *const           machi
         // Read otherwise, other samples may lack a pressure.
         check->curves.points =
             air.points < check->curves.points ? air.points : check->curves.points;
-        status =
-            draw(&air, correction, &check->curves.mended_drive_N, &check->curves.mended_load_N);
+        double *time_s = NULL; // as before
+        status = draw(&air, correction, &check->curves.mended_drive_N, &check->curves.mended_load_N,
+                      &time_s);
     }
     if (status == DIG_OK) {
         check_rest(&causes, check);
@@ -339,7 +316,6 @@ enum dig_status dig_machine_air_check_run(const struct dig_machine *const       
 void dig_machine_air_check_finish(struct dig_machine_air_check *const check)
 {
     if (check != NULL) {
-        free(check->curves.time_s);
         free(check->curves.drive_N);
         free(check->curves.mended_drive_N);
         *check = (struct dig_machine_air_check){ .items = 0 };

@@ -68,8 +68,7 @@ struct dig_check_item {
 /// Pushes over time for a picture, N: measured and by the file's balance; [3 * point + joint].
 struct dig_check_curves {
     size_t  points;
-    double *time_s;
-    double *drive_N, *load_N;               // one allocation; as the columns and the file say
+    double *drive_N, *load_N, *time_s;      // one allocation; as the columns and the file say
     double *mended_drive_N, *mended_load_N; // likewise; best reading, corrected
 };
 

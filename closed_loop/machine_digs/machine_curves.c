@@ -188,21 +188,6 @@ static size_t beside(const struct dig_machine_dig *const dig, const size_t at, c
     return dig_machine_dig_sample_at(dig, dig->time_s[at < last ? at : last] + by_s);
 }
 
-// How the machine stood while it dug.
-static void tell_pitch(const struct dig_machine_dig *const dig, struct dig_measured *const measured)
-{
-    double sum   = 0.0;
-    double count = 0.0;
-    for (size_t i = dig->contact; i < dig->end && i < dig->samples; i++) {
-        if (dig->sample[i].valid[DIG_SIGNAL_PITCH_rad]) {
-            sum += dig->sample[i].value[DIG_SIGNAL_PITCH_rad];
-            count += 1.0;
-        }
-    }
-    measured->pitch_known = count > 0.0;
-    measured->pitch_rad   = count > 0.0 ? sum / count : 0.0;
-}
-
 enum dig_status dig_machine_dig_measure(const struct dig_machine *const     machine,
                                         const struct dig_curve_set *const   set,
                                         const struct dig_machine_dig *const dig,
@@ -238,7 +223,8 @@ enum dig_status dig_machine_dig_measure(const struct dig_machine *const     mach
     measured->last       = o.last;
     measured->pace       = dig->pace;
     measured->trajectory = dig->trajectory;
-    tell_pitch(dig, measured);
+    measured->pitch_known =
+        dig_machine_dig_pitch(dig, dig->contact, dig->end, &measured->pitch_rad);
     if (is && dig_approach_varies(set, (size_t)dig->trajectory)) {
         tell_path_depth(set, dig, &track, window, measured->deeper);
     }

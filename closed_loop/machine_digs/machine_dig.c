@@ -219,20 +219,6 @@ static void split(const struct dig_machine *const machine, const struct dig_curv
     dig_free_air_find(v, found->start, found->end, set->tooth_m, dig);
 }
 
-// How the machine stands, in the mean; 0 where it does not say.
-static double pitch_of(const struct dig_machine_dig *const dig)
-{
-    double sum   = 0.0;
-    double count = 0.0;
-    for (size_t i = 0; i < dig->samples; i++) {
-        sum += dig->sample[i].valid[DIG_SIGNAL_PITCH_rad]
-                   ? dig->sample[i].value[DIG_SIGNAL_PITCH_rad]
-                   : 0.0;
-        count += dig->sample[i].valid[DIG_SIGNAL_PITCH_rad] ? 1.0 : 0.0;
-    }
-    return count > 0.0 ? sum / count : 0.0;
-}
-
 // Finds the dig in the machine's frame and in the world's, and leaves the frame and vertices in
 // which it lies nearer its trajectory.
 static struct found find(const struct dig_machine *const   machine,
@@ -242,8 +228,8 @@ static struct found find(const struct dig_machine *const   machine,
     dig->frame_rad = 0.0;
     lay_out(machine, set, dig, v);
     const struct found own = search(set, v, asked);
-    dig->frame_rad         = pitch_of(dig);
-    if (!(fabs(dig->frame_rad) > 0.0)) {
+    if (!dig_machine_dig_pitch(dig, 0, dig->samples, &dig->frame_rad) ||
+        !(fabs(dig->frame_rad) > 0.0)) {
         return own;
     }
     lay_out(machine, set, dig, v);

@@ -65,6 +65,9 @@ void dig_machine_dig_finish(struct dig_machine_dig *dig);
 /// The first sample at this time or after; samples: there is none.
 size_t dig_machine_dig_sample_at(const struct dig_machine_dig *dig, double time_s);
 
+/// The mean pitch of samples [from, to); false, and 0, where none of them tells it.
+bool dig_machine_dig_pitch(const struct dig_machine_dig *dig, size_t from, size_t to, double *rad);
+
 /// A time between a sample and the next: how far towards that, 0 … 1, the nearer end where it lies
 /// outside.
 struct dig_between {

@@ -236,6 +236,21 @@ size_t dig_machine_dig_sample_at(const struct dig_machine_dig *const dig, const 
     return i;
 }
 
+bool dig_machine_dig_pitch(const struct dig_machine_dig *const dig, const size_t from,
+                           const size_t to, double *const rad)
+{
+    double sum   = 0.0;
+    double count = 0.0;
+    for (size_t i = from; i < to && i < dig->samples; i++) {
+        if (dig->sample[i].valid[DIG_SIGNAL_PITCH_rad]) {
+            sum += dig->sample[i].value[DIG_SIGNAL_PITCH_rad];
+            count += 1.0;
+        }
+    }
+    *rad = count > 0.0 ? sum / count : 0.0;
+    return count > 0.0;
+}
+
 struct dig_between dig_machine_dig_between(const struct dig_machine_dig *const dig,
                                            const double time_s, const size_t near)
 {

@@ -255,23 +255,18 @@ static void list_pairs(struct dig_trace *const trace)
 static enum dig_status tell_machines(const struct dig_trace_work *const w,
                                      struct dig_trace *const            trace)
 {
-    struct of_machine made[DIG_MACHINE_EFFECTS];
-    bool              done[DIG_MACHINE_EFFECTS] = { false };
-    enum dig_status   status                    = DIG_OK;
+    enum dig_status status = DIG_OK;
     for (size_t i = 0; i < trace->tells && status == DIG_OK; i++) {
         struct dig_tell_apart *const tell = &trace->tell[i];
+        struct of_machine            made[2];
         if (!dig_effect_is_of_machine(tell->effect[0])) {
             continue;
         }
-        for (size_t e = 0; e < 2; e++) {
-            const enum dig_effect_id id = tell->effect[e];
-            if (status == DIG_OK && !done[id]) {
-                status   = work_out(w, id, &made[id]);
-                done[id] = true;
-            }
+        for (size_t e = 0; e < 2 && status == DIG_OK; e++) {
+            status = work_out(w, tell->effect[e], &made[e]);
         }
         if (status == DIG_OK) {
-            status = tell_machine(w, &made[tell->effect[0]], &made[tell->effect[1]], tell);
+            status = tell_machine(w, &made[0], &made[1], tell);
         }
     }
     return status;

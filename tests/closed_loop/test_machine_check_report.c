@@ -47,12 +47,11 @@ static int make(void **state)
         add((enum dig_check_question)q, DIG_JOINT_BUCKET, DIG_CHECK_OK);
         add((enum dig_check_question)q, DIG_JOINT_BUCKET, DIG_CHECK_WRONG);
     }
-    double *const read    = malloc(6 * POINTS * sizeof(double));
+    double *const read    = malloc(7 * POINTS * sizeof(double));
     double *const mended  = malloc(6 * POINTS * sizeof(double));
     double *const curve[] = { read, read + 3 * POINTS, mended, mended + 3 * POINTS };
-    check.curves          = (struct dig_check_curves){ POINTS,   malloc(POINTS * sizeof(double)),
-                                                       curve[0], curve[1],
-                                                       curve[2], curve[3] };
+    check.curves = (struct dig_check_curves){ POINTS,   curve[0], curve[1], read + 6 * POINTS,
+                                              curve[2], curve[3] };
     for (int p = 0; p < POINTS; p++) {
         check.curves.time_s[p] = 0.025 * p;
         for (int c = 0; c < 4; c++) {
