@@ -50,7 +50,7 @@ offline_dem/sweep      sweep
 offline_dem/device     engine_cuda | device_carry device_grain device_surfaces
 offline_dem/reference  engine_ode
 offline_dem/cuda
-closed_loop/numeric    | dense levenberg vectors
+closed_loop/numeric    | dense levenberg
 closed_loop/recordings measured observe | features lateness reading_noise regressors path_depth
 closed_loop/machine_digs observe_machine recording_faults | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
@@ -59,7 +59,7 @@ closed_loop/air        | machine_air
 closed_loop/machine    machine_side | machine_fit machine_lines machine_noise
 closed_loop/check      machine_check
 closed_loop/search     | cross_validation search search_work unlisted
-closed_loop/accuracy   score | effect_size judge trend
+closed_loop/accuracy   score | effect_size judge
 closed_loop/verdict    trace | residuals
 closed_loop/design     design
 closed_loop/report     design_report html machine_check_report plot report trace_report

@@ -1,7 +1,6 @@
 #include "closed_loop/fit/common_error.h"
 
 #include "closed_loop/numeric/dense.h"
-#include "closed_loop/numeric/vectors.h"
 #include "core/chance.h"
 
 #include <assert.h>

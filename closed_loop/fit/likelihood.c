@@ -2,7 +2,6 @@
 
 #include "closed_loop/model/soil_fit.h"
 #include "closed_loop/numeric/dense.h"
-#include "closed_loop/numeric/vectors.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 #include "closed_loop/fit/whitened_digs.h"
 
 #include "closed_loop/fit/whitened_group.h"
-#include "closed_loop/numeric/vectors.h"
+#include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,7 +1,6 @@
 #include "closed_loop/model/response_surface.h"
 
 #include "closed_loop/numeric/dense.h"
-#include "closed_loop/numeric/vectors.h"
 #include "estimator/approach/interpolate.h"
 
 #include <assert.h>

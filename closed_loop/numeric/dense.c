@@ -1,7 +1,5 @@
 #include "closed_loop/numeric/dense.h"
 
-#include "closed_loop/numeric/vectors.h"
-
 #include <assert.h>
 #include <math.h>
 

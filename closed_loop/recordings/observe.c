@@ -4,7 +4,6 @@
 #include "closed_loop/recordings/force_check.h"
 #include "closed_loop/recordings/lateness.h"
 #include "closed_loop/recordings/path_depth.h"
-#include "closed_loop/recordings/path_match.h"
 #include "closed_loop/recordings/reading_noise.h"
 #include "core/entry_set.h"
 #include "core/units.h"

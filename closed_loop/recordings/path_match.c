@@ -1,4 +1,4 @@
-#include "closed_loop/recordings/path_match.h"
+#include "closed_loop/recordings/alignment.h"
 
 #include "closed_loop/recordings/observe.h"
 #include "core/entry_set.h"

@@ -1,7 +1,5 @@
 #include "closed_loop/search/unlisted.h"
 
-#include "closed_loop/search/unlisted_regression.h"
-
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "closed_loop/search/unlisted_regression.h"
+#include "closed_loop/search/unlisted.h"
 
 #include "closed_loop/numeric/dense.h"
 #include "closed_loop/recordings/regressors.h"

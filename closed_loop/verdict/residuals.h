@@ -1,12 +1,38 @@
 // Residuals of a campaign's digs, for people and programs: dig by dig, and over the state of the
-// dig. Nothing is decided by them.
+// dig: means over bins of a regressor, and the slope of a straight line through all points. Nothing
+// is decided by them.
 
 #ifndef DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
 #define DIG_CLOSED_LOOP_VERDICT_RESIDUALS_H
 
-#include "closed_loop/accuracy/trend.h"
 #include "closed_loop/recordings/regressors.h"
 #include "closed_loop/verdict/trace_work.h"
+
+#define DIG_TREND_BINS 8
+
+/// The points of one dig: y over x.
+struct dig_trend_dig {
+    size_t        points;
+    const double *x;
+    const double *y;
+};
+
+struct dig_trend_bin {
+    double at;             // its middle
+    double mean;           // over digs of their means in it
+    double standard_error; // of that mean, as the digs tell it; NaN with one dig
+    size_t digs;           // that come there
+};
+
+struct dig_trend {
+    double               slope; // of y over x
+    double               correlation;
+    size_t               bins; // equal widths of x, empty ones left out
+    struct dig_trend_bin bin[DIG_TREND_BINS];
+};
+
+/// x and y must be finite. Slope and correlation are NaN where x is the same everywhere.
+void dig_trend_fit(size_t digs, const struct dig_trend_dig dig[], struct dig_trend *trend);
 
 /// Of one channel in one part of a dig; all NaN where nothing was measured. relative adds up in
 /// squares over the parts: of the moment the sum's root is this dig's error (docs/numerics.md).

@@ -1,4 +1,4 @@
-#include "closed_loop/fit/shifts.h"
+#include "closed_loop/fit/common_error.h"
 
 #include "tests/closed_loop/world_fixture.h"
 

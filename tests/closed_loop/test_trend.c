@@ -1,4 +1,4 @@
-#include "closed_loop/accuracy/trend.h"
+#include "closed_loop/verdict/residuals.h"
 
 #include "tests/testlib.h"
 

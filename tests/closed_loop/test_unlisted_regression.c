@@ -1,6 +1,6 @@
 // Tests for closed_loop/search/unlisted_regression.c
 
-#include "closed_loop/search/unlisted_regression.h"
+#include "closed_loop/search/unlisted.h"
 
 #include "core/units.h"
 #include "tests/closed_loop/world_fixture.h"
