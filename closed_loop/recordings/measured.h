@@ -54,7 +54,7 @@ struct dig_measured {
     double value[DIG_FORCE_CHANNELS]
                 [DIG_CURVE_POINTS]; // by the model as it was; 0 where not measured
     double sigma[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]; // 1 sigma of the sensors, after smoothing
-    struct dig_lasting lasting;                         // verdict/trace_noise.c tells it
+    struct dig_lasting lasting;                         // verdict/trace_work.c tells it
     // What effects of the machine that were found add to value: 0 until any is.
     double machine[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 

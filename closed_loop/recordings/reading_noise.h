@@ -1,5 +1,5 @@
 // White noise of sensors, estimated from their readings. Noise that is slower than the readings is
-// not seen here: closed_loop/verdict/trace_noise.c.
+// not seen here: closed_loop/verdict/trace_work.c.
 
 #ifndef DIG_CLOSED_LOOP_RECORDINGS_READING_NOISE_H
 #define DIG_CLOSED_LOOP_RECORDINGS_READING_NOISE_H

@@ -1,10 +1,13 @@
 #include "closed_loop/verdict/trace_work.h"
 
 #include "closed_loop/model/approach_change.h"
+#include "closed_loop/search/search_work.h"
 #include "estimator/approach/approach_slots.h"
 
 #include <math.h>
 #include <string.h>
+
+static const struct dig_hypothesis none = { .effects = 0 };
 
 // The least that a depth which nobody tells is open by.
 #define LEAST_SHARE 0.125
@@ -123,22 +126,24 @@ static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
     return status;
 }
 
-enum dig_status dig_trace_whiten(const struct dig_trace_work *const w, const double place[])
+// Whitens the digs to fit to, about the gravel at place (NULL: not known yet), into the batch.
+static enum dig_status whiten(const struct dig_trace_work *const w, const double place[])
 {
     return dig_whitened_digs_make(w->soil, w->scatter, w->digs, w->measured, w->fit, place,
                                   w->batch);
 }
 
-void dig_trace_fit_plain(const struct dig_trace_work *const w, struct dig_fitted *const plain)
+// Fits the plain hypothesis to the batch, thoroughly.
+static void fit_plain(const struct dig_trace_work *const w, struct dig_fitted *const plain)
 {
-    static const struct dig_hypothesis none                           = { .effects = 0 };
-    const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    const double middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
     dig_hypothesis_fit(w->batch, &none, middle, DIG_FIT_THOROUGH, plain);
 }
 
-// Of digs that are whitened otherwise, too, in units of the table. What was taken off was dug in
+// -2 log likelihood of a fit of the batch, in units of the table: to compare it with one of a batch
+// whitened otherwise. What was taken off was dug in
 // few beds: so much is to be expected of it in the digs about their means.
-double dig_trace_misfit(const struct dig_trace_work *const w, const struct dig_fitted *const fitted)
+static double misfit_of(const struct dig_trace_work *const w, const struct dig_fitted *const fitted)
 {
     double misfit = fitted->misfit;
     for (size_t i = 0; i < w->batch->digs; i++) {
@@ -174,21 +179,21 @@ static enum dig_status open_depths(const struct dig_trace_work *const w, const d
     double              least    = INFINITY;
     enum dig_status     status   = DIG_OK;
     if (!set_share(w, best) || !dig_approach_varies_any(w->set)) {
-        return dig_trace_whiten(w, place);
+        return whiten(w, place);
     }
     for (size_t i = 0; i < sizeof shares / sizeof shares[0] && status == DIG_OK; i++) {
         struct dig_fitted plain;
         (void)set_share(w, shares[i]);
-        status = dig_trace_whiten(w, place);
+        status = whiten(w, place);
         if (status == DIG_OK) {
-            dig_trace_fit_plain(w, &plain);
-            const double misfit = dig_trace_misfit(w, &plain);
+            fit_plain(w, &plain);
+            const double misfit = misfit_of(w, &plain);
             best                = misfit < least ? shares[i] : best;
             least               = fmin(misfit, least);
         }
     }
     (void)set_share(w, best);
-    return status == DIG_OK ? dig_trace_whiten(w, place) : status;
+    return status == DIG_OK ? whiten(w, place) : status;
 }
 
 // What an approach adds depends on the gravel, and the gravel on what is taken off: begins with one
@@ -200,14 +205,14 @@ static enum dig_status settle(const struct dig_trace_work *const w, const enum w
     for (size_t i = 0; i < w->digs; i++) {
         put_back(&w->measured[i]);
     }
-    enum dig_status status = dig_trace_whiten(w, NULL);
+    enum dig_status status = whiten(w, NULL);
     for (int round = 0; round < ROUNDS && status == DIG_OK; round++) {
-        dig_trace_fit_plain(w, plain);
+        fit_plain(w, plain);
         status = take_off_approaches(w, plain->number, round == 0 ? begin : LIKER);
-        status = status == DIG_OK ? dig_trace_whiten(w, plain->number) : status;
+        status = status == DIG_OK ? whiten(w, plain->number) : status;
     }
     if (status == DIG_OK) {
-        dig_trace_fit_plain(w, plain);
+        fit_plain(w, plain);
     }
     return status;
 }
@@ -224,17 +229,17 @@ static enum dig_status settle_best(const struct dig_trace_work *const w,
     }
     (void)set_share(w, deep ? LEAST_SHARE : 1.0);
     if (!any) {
-        const enum dig_status status = dig_trace_whiten(w, NULL);
+        const enum dig_status status = whiten(w, NULL);
         if (status == DIG_OK) {
-            dig_trace_fit_plain(w, plain);
+            fit_plain(w, plain);
         }
         return status;
     }
     enum dig_status status = settle(w, MADE, plain);
     if (deep && status == DIG_OK) {
-        const double made = dig_trace_misfit(w, plain);
+        const double made = misfit_of(w, plain);
         status            = settle(w, LEVEL, plain);
-        if (status == DIG_OK && made < dig_trace_misfit(w, plain)) {
+        if (status == DIG_OK && made < misfit_of(w, plain)) {
             status = settle(w, MADE, plain);
         }
     }
@@ -252,6 +257,103 @@ enum dig_status dig_trace_batch(const struct dig_trace_work *const w,
         return dig_error_set(error, DIG_EINVAL,
                              "the digs of one trajectory have too little measured in common");
     }
-    dig_trace_fit_plain(w, plain);
+    fit_plain(w, plain);
     return DIG_OK;
+}
+
+// Estimates noise of sensors that is correlated over a bin of a dig, as of a filtered load cell or
+// an arm that trembles. Rows do not show it, as grains move as slowly. But it is as large where a
+// dig hardly resists, it is rough along the dig, and no two digs have the same: neither scatter of
+// beds nor any effect is like that. So the likelihood of the digs shows it.
+//
+// Sizes of noise that are asked about, over the mean dig's, each .6 of the one before, and how long
+// it may last.
+static const double shares[]   = { 0.25, 0.15, 0.09, 0.054, 0.0324, 0.0194, 0.0117 };
+static const double memory_s[] = { 0.03, 0.1, 0.3 };
+
+static enum dig_status set_noise(const struct dig_trace_work *const w, const double place[DIG_AXES],
+                                 const struct dig_lasting *const noise)
+{
+    for (size_t i = 0; i < w->digs; i++) {
+        w->measured[i].lasting = *noise;
+    }
+    return whiten(w, place);
+}
+
+// Misfit by which an effect must lead the plain gravel to have a say.
+static const double told_apart = 2.0 * DIG_SEARCH_TOLD_APART;
+
+// The misfit, with that noise, of what explains the digs best: a plain gravel, or one effect, or
+// what has no name, where that is told apart from it. Noise must not take from an effect what is
+// its own. start: where to fit from, then the plain fit.
+static enum dig_status least_misfit(const struct dig_trace_work *const w,
+                                    const double                       place[DIG_AXES],
+                                    const struct dig_lasting *const    noise,
+                                    double start[DIG_HYPOTHESIS_NUMBERS], double *const misfit)
+{
+    struct dig_hypothesis single[DIG_RIVALS_MAX];
+    struct dig_fitted     fitted[DIG_RIVALS_MAX + 1];
+    struct dig_fitted     nameless;
+    struct dig_statistic  statistic;
+    const enum dig_status status = set_noise(w, place, noise);
+    if (status != DIG_OK) {
+        return status;
+    }
+    const size_t rivals = dig_search_rivals(w->batch, single);
+    dig_null_simulation_fit(w->batch, &none, rivals, single, start, DIG_FIT_BARE, fitted,
+                            &statistic);
+    dig_hypothesis_fit_unlisted(w->batch, &fitted[0], &nameless);
+    memcpy(start, fitted[0].number, sizeof fitted[0].number);
+    const double gain = fmax(statistic.gain, fitted[0].misfit - nameless.misfit);
+    *misfit           = misfit_of(w, &fitted[0]) - fmax(gain - told_apart, 0.0);
+    return status;
+}
+
+// Noise of a share of the mean dig's size, over the trajectories.
+static struct dig_lasting noise_of(const struct dig_whitened_digs *const batch, const double share,
+                                   const double lasts_s)
+{
+    struct dig_lasting noise = { .memory_s = lasts_s };
+    for (size_t g = 0; g < batch->groups; g++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            noise.sigma[c] += share * batch->group[g].amplitude[c] / (double)batch->groups;
+        }
+    }
+    return noise;
+}
+
+enum dig_status dig_trace_tell_noise(const struct dig_trace_work *const w,
+                                     struct dig_fitted *const           plain)
+{
+    const struct dig_whitened_digs without                       = *w->batch;
+    double                         start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_lasting             told                          = { .memory_s = 0.0 };
+    double                         best                          = 0.0;
+    double                         place[DIG_HYPOTHESIS_NUMBERS];
+    memcpy(start, plain->number, DIG_AXES * sizeof start[0]);
+    memcpy(place, start, sizeof place);
+    enum dig_status status = least_misfit(w, plain->number, &told, start, &best);
+    best -=
+        2.0 * dig_search_penalty(&without, 1); // noise's size; its memory hardly tells by itself
+    for (size_t m = 0; m < sizeof memory_s / sizeof memory_s[0]; m++) {
+        for (size_t i = 0; i < sizeof shares / sizeof shares[0] && status == DIG_OK; i++) {
+            const struct dig_lasting noise = noise_of(&without, shares[i], memory_s[m]);
+            double                   misfit;
+            status = least_misfit(w, plain->number, &noise, start, &misfit);
+            if (status == DIG_OK && misfit < best) {
+                best = misfit;
+                told = noise;
+                memcpy(place, start, sizeof place);
+            }
+        }
+    }
+    if (status == DIG_OK) {
+        status = set_noise(w, place, &told);
+    }
+    if (status == DIG_OK && told.memory_s > 0.0) {
+        fit_plain(w, plain);
+    } else if (status == DIG_OK) {
+        *w->batch = without;
+    }
+    return status;
 }

@@ -79,17 +79,6 @@ DIG_MUST_CHECK enum dig_status dig_trace_machine(struct dig_trace_work *w, struc
 DIG_MUST_CHECK enum dig_status dig_trace_settle_machine(struct dig_trace_work *w,
                                                         const double           covariance[]);
 
-/// Fits the plain hypothesis to the batch, thoroughly.
-void dig_trace_fit_plain(const struct dig_trace_work *w, struct dig_fitted *plain);
-
-/// Whitens the digs to fit to, about the gravel at place (NULL: not known yet), into the batch.
-DIG_MUST_CHECK enum dig_status dig_trace_whiten(const struct dig_trace_work *w,
-                                                const double                 place[]);
-
-/// -2 log likelihood of a fit of the batch, in units of the table: to compare it with one of a
-/// batch whitened otherwise.
-double dig_trace_misfit(const struct dig_trace_work *w, const struct dig_fitted *fitted);
-
 /// Leaves in measured[].lasting the noise along a bin that makes the digs likeliest, and the batch
 /// whitened and *plain fitted with it; where that is none, both as they were. Some 300 ms.
 DIG_MUST_CHECK enum dig_status dig_trace_tell_noise(const struct dig_trace_work *w,
@@ -108,18 +97,6 @@ void dig_trace_doubt_soil(struct dig_trace_work *w);
 /// machine that no effect explains, because it may do otherwise to the next dig. Probabilities
 /// without free air are even at most. trace->residual says where what has no name is seen.
 void dig_trace_fill_verdict(const struct dig_trace_work *w, struct dig_trace *trace);
-
-/// Numbers of a fitted effect as a model file and a report have them.
-struct dig_model_effect dig_trace_effect(const struct dig_soil   *soil,
-                                         const struct dig_fitted *fitted, size_t effect,
-                                         double probability);
-
-/// The same of a rock that lies elsewhere than the table's.
-struct dig_model_effect dig_trace_rock(const struct dig_rock *rock, double probability);
-
-/// The part of a dig in which a fitted effect is largest against the scatter.
-enum dig_part dig_trace_seen_in(const struct dig_trace_work *w, const struct dig_fitted *fitted,
-                                size_t effect);
 
 /// Curves before and after of all digs, zeroed; unlisted is added after.
 void dig_trace_fill_curves(const struct dig_trace_work     *w,
