@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "files/yaml/yaml.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -157,6 +158,30 @@ static void take(const char *const path, void *const loaded, void *const into,
     if (c->status == DIG_OK) {
         *(struct dig_identity *)into = *read;
     }
+}
+
+// Depths, and attacks in rad, nearer than this are one.
+static const double alike = 1e-9;
+
+void dig_identity_write(FILE *const to, const struct dig_identity *const identity)
+{
+    assert(to != NULL && identity != NULL);
+    const struct dig_approach *const made    = &identity->made;
+    struct identity_text             text    = { .identity = *identity,
+                                                 .samples  = identity->match.samples,
+                                                 .weighted = identity->match.weighted >= 0 };
+    struct dig_approach *const       matched = &text.identity.matched;
+    memcpy(text.sample, identity->match.sample, text.samples * sizeof text.sample[0]);
+    // Where it is another than the dig was made at.
+    *matched = dig_approach_normalized(matched);
+    if (!(made->depth > 0.0) || (fabs(matched->depth - made->depth) <= alike &&
+                                 fabs(matched->attack_rad - made->attack_rad) <= alike)) {
+        *matched = (struct dig_approach){ .depth = 0.0 };
+    }
+    if (!text.weighted) {
+        text.identity.match.weighted_distance = (double)NAN;
+    }
+    dig_json_write(to, &schema, &text);
 }
 
 enum dig_status dig_identity_read(const char *const path, struct dig_identity *const identity,

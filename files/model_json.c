@@ -1,11 +1,14 @@
 #include "files/model_json.h"
 
 #include "core/name.h"
+#include "files/text/whole.h"
 #include "files/yaml/yaml.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 struct effect_text {
     char                    name[DIG_NAME_SIZE];
@@ -143,6 +146,57 @@ static void take(const char *const path, void *const loaded, void *const into,
     if (c->status == DIG_OK) {
         *(struct dig_model *)into = *m;
     }
+}
+
+static void put_effects(const size_t effects, const struct dig_model_effect from[],
+                        struct effect_text text[])
+{
+    for (size_t e = 0; e < effects; e++) {
+        text[e].effect = from[e];
+        (void)snprintf(text[e].name, sizeof text[e].name, "%s", dig_effect_name(from[e].effect));
+    }
+}
+
+// Curves that are 0 throughout are left out.
+static void put_curves(const struct dig_model_unlisted *const unlisted,
+                       struct model_text *const               text)
+{
+    for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            struct curve_text *const to  = &text->curve[text->curves];
+            bool                     any = false;
+            for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+                to->share[k] = (double)unlisted->share[t][c][k];
+                any          = any || fabs(to->share[k]) > 0.0;
+            }
+            to->trajectory = (uint32_t)t;
+            to->channel    = c;
+            text->curves += any ? 1 : 0;
+        }
+    }
+}
+
+enum dig_status dig_model_save(const char *const path, const struct dig_model *const model,
+                               struct dig_error *const error)
+{
+    assert(path != NULL && model != NULL);
+    struct dig_out           out;
+    struct model_text *const text = calloc(1, sizeof *text);
+    if (text == NULL) {
+        return dig_error_set(error, DIG_ENOMEM, "%s: no memory", path);
+    }
+    text->model   = *model;
+    text->version = 1;
+    put_effects(model->effects, model->effect, text->effect);
+    put_effects(model->not_applied, model->left_out, text->left_out);
+    put_curves(&model->unlisted, text);
+    enum dig_status status = dig_out_open(&out, path, error);
+    if (status == DIG_OK) {
+        dig_json_write(out.file, &schema, text);
+        status = dig_out_commit(&out, error);
+    }
+    free(text);
+    return status;
 }
 
 enum dig_status dig_model_read(const char *const path, struct dig_model *const model,

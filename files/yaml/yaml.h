@@ -6,6 +6,8 @@
 #include "core/error.h"
 #include "files/yaml/yaml_schema.h"
 
+#include <stdio.h>
+
 /// Loads path by its schema and hands it to take(path, loaded, into, c), which may change what was
 /// loaded, and is to write *into only where all its conditions hold. Their words begin with the
 /// dotted key of a value ("parts[3].weight_kg: %g, expected …"). Unknown keys, missing keys and
@@ -15,6 +17,11 @@ DIG_MUST_CHECK enum dig_status dig_yaml_read(const char *path, const struct dig_
                                              void (*take)(const char *path, void *loaded,
                                                           void *into, struct dig_conditions *c),
                                              void *into, struct dig_error *error);
+
+/// Writes the struct as one JSON object that dig_yaml_read() reads back, and a line feed. What is
+/// optional is left out where its `given` is false, a number is 0 or none, a list is empty. Another
+/// number that is none becomes 0; a control character becomes '?'.
+void dig_json_write(FILE *to, const struct dig_yaml_file *schema, const void *from);
 
 /// The line on which the value at dotted key ("cylinders.boom.bore_m", "recordings[2].file")
 /// stands, or 0 when it is not there.
