@@ -5,7 +5,7 @@
 //
 //   read . d = soil . d(pin) + M dphi + m (g - a) . d(com) - I alpha dphi
 //
-// Every displacement is a central difference of where the bucket is drawn: no lever, no balance.
+// Every displacement is a central difference of where the bucket is: no lever, no balance.
 
 #ifndef DIG_TOOLS_RIG_MOTION_GAUGE_H
 #define DIG_TOOLS_RIG_MOTION_GAUGE_H
@@ -24,9 +24,5 @@ struct dig_rig_load dig_rig_gauge_read(const struct dig_machine    *machine,
                                        const struct dig_rig_pose   *pose,
                                        const struct dig_rig_motion *motion,
                                        const struct dig_rig_wrench *soil);
-
-/// How a bucket moves that is at these poses, span_s apart: second differences.
-struct dig_rig_motion dig_rig_gauge_motion(const struct dig_machine *machine,
-                                           const struct dig_rig_pose pose[3], double span_s);
 
 #endif // DIG_TOOLS_RIG_MOTION_GAUGE_H

@@ -41,6 +41,20 @@ struct dig_rig_front dig_rig_front_at(const struct dig_machine *const    machine
     return front;
 }
 
+struct dig_vec2 dig_rig_on_bucket(const struct dig_rig_pose *const pose, const struct dig_vec2 at_m)
+{
+    return sum((struct dig_vec2){ pose->X_m, pose->Z_m }, turned(at_m, pose->phi_rad));
+}
+
+struct dig_rig_front dig_rig_front_carried(const struct dig_machine *const  machine,
+                                           const struct dig_rig_pose *const pose)
+{
+    struct dig_rig_front front           = { .bucket = *pose };
+    front.attitude_rad[DIG_JOINT_BUCKET] = pose->phi_rad;
+    front.com_m[DIG_JOINT_BUCKET] = dig_rig_on_bucket(pose, machine->link[DIG_JOINT_BUCKET].com_m);
+    return front;
+}
+
 enum dig_status dig_rig_inverse(const struct dig_machine *const  machine,
                                 const struct dig_rig_pose *const pose,
                                 struct dig_rig_joints *const     joints)

@@ -32,6 +32,13 @@ struct dig_rig_front {
 struct dig_rig_front dig_rig_front_at(const struct dig_machine    *machine,
                                       const struct dig_rig_joints *joints);
 
+/// That of a bucket which a force sensor carries there; it has no other links.
+struct dig_rig_front dig_rig_front_carried(const struct dig_machine  *machine,
+                                           const struct dig_rig_pose *pose);
+
+/// Where a point of the bucket's frame is.
+struct dig_vec2 dig_rig_on_bucket(const struct dig_rig_pose *pose, struct dig_vec2 at_m);
+
 /// The joint angles of a pose, with the arm pin above the line boom foot - bucket pin, which is the
 /// only side an excavator's arm can be on. DIG_EUNREACHABLE when the pin is out of reach, or nearer
 /// to the boom foot than the links allow. Joint limits are not looked at.

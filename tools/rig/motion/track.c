@@ -42,29 +42,19 @@ static enum dig_status move(const struct dig_machine *const  machine,
                             const struct dig_rig_placement *const placement,
                             struct dig_rig_motion *const          motion)
 {
-    struct dig_rig_motion result = { .turn_radps2 = { 0.0 } };
-    const double          span_s = (double)reach * DIG_RIG_STEP_s;
-    const size_t          at[3]  = { i - reach, i, i + reach };
-    struct dig_rig_pose   pose[3];
-    struct dig_rig_joints joints[3];
-    enum dig_status       status = DIG_OK;
-    for (int k = 0; k < 3; k++) {
-        pose[k] = placed(path, at[k], placement);
-    }
-    if (machine->sensor.fitted) {
-        *motion = dig_rig_gauge_motion(machine, pose, span_s);
-        return DIG_OK;
-    }
-    for (int k = 0; k < 3 && status == DIG_OK; k++) {
-        status = dig_rig_inverse(machine, &pose[k], &joints[k]);
-    }
-    if (status != DIG_OK) {
-        return status;
-    }
-    const double        per_s2   = 1.0 / (span_s * span_s);
-    static const double share[3] = { 1.0, -2.0, 1.0 };
-    for (int k = 0; k < 3; k++) {
-        const struct dig_rig_front front = dig_rig_front_at(machine, &joints[k]);
+    static const double   share[3] = { 1.0, -2.0, 1.0 };
+    struct dig_rig_motion result   = { .turn_radps2 = { 0.0 } };
+    const double          span_s   = (double)reach * DIG_RIG_STEP_s;
+    const double          per_s2   = 1.0 / (span_s * span_s);
+    for (size_t k = 0; k < 3; k++) {
+        const struct dig_rig_pose pose   = placed(path, i - reach + k * reach, placement);
+        struct dig_rig_joints     joints = { .rad = { 0.0 } };
+        if (!machine->sensor.fitted && dig_rig_inverse(machine, &pose, &joints) != DIG_OK) {
+            return DIG_EUNREACHABLE;
+        }
+        const struct dig_rig_front front = machine->sensor.fitted
+                                               ? dig_rig_front_carried(machine, &pose)
+                                               : dig_rig_front_at(machine, &joints);
         for (int j = 0; j < DIG_JOINTS; j++) {
             result.com_mps2[j] =
                 dig_vec2_add_scaled(result.com_mps2[j], share[k] * per_s2, front.com_m[j]);

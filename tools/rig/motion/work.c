@@ -6,6 +6,25 @@
 static const double step_rad   = 1e-5;
 static const double no_lever_m = 1e-3;
 
+double dig_rig_work_J(const struct dig_machine *const    machine,
+                      const struct dig_rig_motion *const motion,
+                      const struct dig_rig_wrench *const soil,
+                      const struct dig_rig_front *const from, const struct dig_rig_front *const to)
+{
+    double work_J = 0.0;
+    for (int k = 0; k < DIG_JOINTS; k++) {
+        const struct dig_vec2 moved      = dig_vec2_sub(to->com_m[k], from->com_m[k]);
+        const double          turned_rad = to->attitude_rad[k] - from->attitude_rad[k];
+        const double          mass_kg    = machine->link[k].mass_kg;
+        work_J += -mass_kg * motion->com_mps2[k].x * moved.x;
+        work_J += -mass_kg * (DIG_RIG_GRAVITY_mps2 + motion->com_mps2[k].y) * moved.y;
+        work_J += -machine->link[k].inertia_kgm2 * motion->turn_radps2[k] * turned_rad;
+    }
+    return work_J + soil->FX_N * (to->bucket.X_m - from->bucket.X_m) +
+           soil->FZ_N * (to->bucket.Z_m - from->bucket.Z_m) +
+           soil->M_Nm * (to->bucket.phi_rad - from->bucket.phi_rad);
+}
+
 // Work of everything but the cylinders when joint j turns from -step to +step, per radian.
 static double turning_work_Nm(const struct dig_machine *const    machine,
                               const struct dig_rig_joints *const joints,
@@ -16,22 +35,9 @@ static double turning_work_Nm(const struct dig_machine *const    machine,
     struct dig_rig_joints behind = *joints;
     ahead.rad[j] += step_rad;
     behind.rad[j] -= step_rad;
-
-    const struct dig_rig_front to     = dig_rig_front_at(machine, &ahead);
-    const struct dig_rig_front from   = dig_rig_front_at(machine, &behind);
-    double                     work_J = 0.0;
-    for (int k = 0; k < DIG_JOINTS; k++) {
-        const struct dig_vec2 moved      = dig_vec2_sub(to.com_m[k], from.com_m[k]);
-        const double          turned_rad = to.attitude_rad[k] - from.attitude_rad[k];
-        const double          mass_kg    = machine->link[k].mass_kg;
-        work_J += -mass_kg * motion->com_mps2[k].x * moved.x;
-        work_J += -mass_kg * (DIG_RIG_GRAVITY_mps2 + motion->com_mps2[k].y) * moved.y;
-        work_J += -machine->link[k].inertia_kgm2 * motion->turn_radps2[k] * turned_rad;
-    }
-    work_J += soil->FX_N * (to.bucket.X_m - from.bucket.X_m) +
-              soil->FZ_N * (to.bucket.Z_m - from.bucket.Z_m) +
-              soil->M_Nm * (to.bucket.phi_rad - from.bucket.phi_rad);
-    return work_J / (2.0 * step_rad);
+    const struct dig_rig_front to   = dig_rig_front_at(machine, &ahead);
+    const struct dig_rig_front from = dig_rig_front_at(machine, &behind);
+    return dig_rig_work_J(machine, motion, soil, &from, &to) / (2.0 * step_rad);
 }
 
 enum dig_status dig_rig_work_solve(const struct dig_machine *const    machine,

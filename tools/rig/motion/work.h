@@ -39,6 +39,11 @@ struct dig_rig_pressures {
     double head_Pa[DIG_JOINTS], rod_Pa[DIG_JOINTS];
 };
 
+/// Work of soil, weights and inertia as the front goes from one place to another nearby.
+double dig_rig_work_J(const struct dig_machine *machine, const struct dig_rig_motion *motion,
+                      const struct dig_rig_wrench *soil, const struct dig_rig_front *from,
+                      const struct dig_rig_front *to);
+
 /// DIG_EUNREACHABLE where a cylinder has no leverage (|dL/dq| below 1 mm/rad) or the four-bar does
 /// not close.
 DIG_MUST_CHECK enum dig_status dig_rig_work_solve(const struct dig_machine    *machine,
