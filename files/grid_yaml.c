@@ -3,7 +3,6 @@
 #include "core/did_you_mean.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "files/grid_check.h"
 #include "files/yaml/yaml.h"
 
 #include <assert.h>
@@ -97,6 +96,82 @@ static const struct dig_yaml_field fields[] = {
 
 static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct grid_text) };
 
+// A list at a key.
+static void check_ascending(const char *const list, const size_t count, const double value[],
+                            struct dig_conditions *const c)
+{
+    for (size_t i = 1; i < count; i++) {
+        dig_require(c, value[i] > value[i - 1], "%s[%zu]: %g after %g, expected ascending values",
+                    list, i, value[i], value[i - 1]);
+    }
+}
+
+// Axes may be left out together where points stand in their place.
+static void check_axes(const struct dig_grid *const grid, struct dig_conditions *const c)
+{
+    bool any = false;
+    for (int a = 0; a < DIG_AXES; a++) {
+        any = any || grid->count[a] > 0;
+    }
+    for (int a = 0; a < DIG_AXES; a++) {
+        const char *const name = dig_axis_name((enum dig_axis)a);
+        dig_require(c, grid->count[a] > 0 || (!any && grid->points > 0),
+                    "%s: missing, expected a list", name);
+        check_ascending(name, grid->count[a], grid->value[a], c);
+    }
+    dig_require(c, !any || grid->packings > 0, "packings: missing, expected a whole number");
+}
+
+static void check_point(const struct dig_grid *const grid, const size_t i,
+                        struct dig_conditions *const c)
+{
+    const struct dig_grid_point *const p = &grid->point[i];
+    for (size_t k = 0; k < i; k++) {
+        dig_require(c,
+                    !dig_gravel_is_same(&p->gravel, &grid->point[k].gravel) ||
+                        !dig_approach_is_same(&p->approach, &grid->point[k].approach),
+                    "points[%zu]: the gravel of points[%zu], expected another", i, k);
+    }
+    dig_require(c, !p->states || grid->effects == 0,
+                "points[%zu]: depth or attack_deg, expected neither beside effects", i);
+}
+
+static void check_effect(const struct dig_grid *const grid, const size_t i,
+                         struct dig_conditions *const c)
+{
+    const struct dig_grid_effect *const e = &grid->effect[i];
+    for (size_t k = 0; k < i; k++) {
+        dig_require(c, grid->effect[k].effect != e->effect,
+                    "effects[%zu].name: \"%s\" again, expected a new effect", i,
+                    dig_effect_name(e->effect));
+    }
+    for (size_t m = 0; m < e->magnitudes; m++) {
+        for (size_t k = 0; k < m; k++) {
+            dig_require(c, e->magnitude[k] < e->magnitude[m] || e->magnitude[k] > e->magnitude[m],
+                        "effects[%zu].magnitudes[%zu]: %g again, expected another", i, m,
+                        e->magnitude[m]);
+        }
+    }
+}
+
+static void check_grid(const struct dig_grid *const grid, struct dig_conditions *const c)
+{
+    check_axes(grid, c);
+    for (size_t i = 0; i < grid->points; i++) {
+        check_point(grid, i, c);
+    }
+    for (size_t i = 0; i < grid->effects; i++) {
+        check_effect(grid, i, c);
+    }
+    for (size_t i = 0; i < grid->trajectories; i++) {
+        for (size_t j = 0; j < i; j++) {
+            dig_require(c, strcmp(grid->trajectory[i], grid->trajectory[j]) != 0,
+                        "trajectories[%zu]: \"%s\" again, expected a new name", i,
+                        grid->trajectory[i]);
+        }
+    }
+}
+
 static void convert_effects(const struct grid_text *const text, struct dig_grid *const grid,
                             struct dig_conditions *const c)
 {
@@ -126,7 +201,7 @@ static void check_list(const char *const list, const size_t count, const double 
     for (size_t i = 0; i < count; i++) {
         has_plain = has_plain || !(value[i] < plain || value[i] > plain);
     }
-    dig_grid_check_ascending(list, count, value, c);
+    check_ascending(list, count, value, c);
     dig_require(c, has_plain,
                 "%s: without %g, expected it among the values: the digs as the scene has them",
                 list, plain);
@@ -178,7 +253,7 @@ static void take(const char *const path, void *const loaded, void *const into,
     convert_approaches(text, grid);
     convert_effects(text, grid, c);
     check_approaches(text, c);
-    dig_grid_check(grid, c);
+    check_grid(grid, c);
     if (c->status == DIG_OK) {
         *(struct dig_grid *)into = *grid;
     }

@@ -16,6 +16,11 @@
 #define MOST          10000    // digs, matches or events of a shift; more are counted
 #define COUNT_MOST    (INT64_C(1) << 53)
 
+#define BACK_us       1000000
+#define AHEAD_us      60000000.0
+#define SCALE_MOST    100.0              // of time_scale
+#define MOVED_MOST_us (INT64_C(1) << 54) // a log that says more is nobody's
+
 static const struct dig_health_text reloaded = { "reloads", "a new table or model was taken",
                                                  "predictions after it are made with it" };
 static const struct dig_health_text outside  = { "outside",
@@ -87,11 +92,39 @@ static void add_event(struct digreport_shift *const shift, const int64_t time_us
     }
 }
 
+// True where the clock was set since the message before: back by a second or more, or ahead by more
+// than a minute and a hundred times what the monotonic clock went on by (a bench may scale it).
+// moved_us then is another. A monotonic clock that stands, or begins anew, tells no leap.
+static bool is_clock_set(struct digreport_clock *const clock, const int64_t time_us,
+                         const int64_t time_ns)
+{
+    const struct digreport_clock before  = *clock;
+    const int64_t                went_us = time_us - before.time_us;
+    const double                 mono_us = 1e-3 * ((double)time_ns - (double)before.time_ns);
+    const bool                   back    = went_us < -BACK_us;
+    const bool ahead = mono_us > 0.0 && (double)went_us > AHEAD_us + SCALE_MOST * mono_us;
+    clock->any       = true;
+    clock->time_us   = time_us;
+    clock->time_ns   = time_ns;
+    if (!before.any || !(back || ahead)) {
+        return false;
+    }
+    // Between the two messages it went on as the monotonic clock did, where that did not begin
+    // anew.
+    const double mono_most_us = 60e6;
+    const double on_us        = mono_us > 0.0 && mono_us < mono_most_us ? mono_us : 0.0;
+    clock->moved_us           = before.moved_us - went_us + (int64_t)on_us;
+    if (llabs(clock->moved_us) > MOVED_MOST_us) {
+        clock->moved_us = 0;
+    }
+    return true;
+}
+
 // The time of a message on a clock that nobody sets.
 static int64_t shift_time(struct digreport_shift *const shift, const int64_t time_us,
                           const int64_t time_ns)
 {
-    const bool    is_set = digreport_clock_is_set(&shift->clock, time_us, time_ns);
+    const bool    is_set = is_clock_set(&shift->clock, time_us, time_ns);
     const int64_t time   = time_us + shift->clock.moved_us;
     if (is_set) {
         add_event(shift, time, &clock_set, "", 1);

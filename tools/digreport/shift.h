@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "files/lcm/health_text.h"
 #include "files/lcm/lcm_message.h"
-#include "tools/digreport/shift_clock.h"
 #include "tools/digreport/shift_dig.h"
 
 #define DIGREPORT_TEXT 256
@@ -26,6 +25,16 @@ struct digreport_event {
     int64_t                       count;                // by which its counter grew; 0: no counter
     const struct dig_health_text *text;                 // NULL: the daemon's own words
     char                          said[DIGREPORT_TEXT]; // those
+};
+
+/// A clock that is set while a log is written: a controller without a battery, before the network
+/// tells it the time. Messages carry the daemon's monotonic clock, too, which goes on meanwhile. Of
+/// one log; zeroed at its beginning.
+struct digreport_clock {
+    bool    any;
+    int64_t time_us;  // of the log, at the last message
+    int64_t time_ns;  // monotonic, of that message
+    int64_t moved_us; // what is added to the log's time so that it goes on
 };
 
 /// digreport_shift_begin() zeroes it but for the scale: nothing was taken.
