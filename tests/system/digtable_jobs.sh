@@ -81,8 +81,8 @@ echo "no table" >"$jobs/part/3.sqlite"
 submit --tasks 4
 check "four are submitted" eval 'is $code 0 && grep -q "4 submitted as job 1" $work/err'
 check "the others are done" eval 'is "$(state done)" 3 && is "$(state failed)" 1 && is "$(state digs_done)" 9 && [ ! -e "$table" ]'
-digtable status "$jobs/"
-check "one that fails is named, with why, of the folder, too" eval 'is $code 0 && grep -q "^shard 3 failed: digtable: part/3.sqlite: not a digsight table" $work/out && grep -q "s a dig" $work/out'
+digtable status "$table"
+check "one that fails is named, with why" eval 'is $code 0 && grep -q "^shard 3 failed: digtable: part/3.sqlite: not a digsight table" $work/out && grep -q "s a dig" $work/out'
 made=$(stat -c %Y.%i "$jobs"/shards/[124].sqlite)
 
 # Other plans.

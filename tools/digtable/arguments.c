@@ -126,10 +126,8 @@ static const struct dig_command commands[] = {
       "Plans once, in the folder TABLE.sqlite.jobs, and merges the shards when all are done. The "
       "same command again submits what failed, and only that.",
       "digtable submit scene.yaml grid.yaml -o my.sqlite --tasks 500 --time 4:00:00\n" },
-    { "status", "TABLE.sqlite [OPTION]...\nFOLDER [OPTION]...",
-      "Shows how far a table of `digtable submit` is.", NULL,
-      "digtable status my.sqlite\n"
-      "digtable status my.sqlite.jobs --json\n" },
+    { "status", "TABLE.sqlite [OPTION]...", "Shows how far a table of `digtable submit` is.", NULL,
+      "digtable status my.sqlite --json\n" },
     { "list", "TABLE.sqlite [OPTION]...", "Lists the entries and how many packings each has.", NULL,
       "digtable list tables/product.sqlite\n" },
     { "show",

@@ -114,22 +114,13 @@ static enum dig_status check_folder(const struct dig_job_folder *const folder,
     return status;
 }
 
-enum dig_status dig_job_folder_open(const char *const path, struct dig_job_folder *const folder,
+enum dig_status dig_job_folder_open(const char *const table, struct dig_job_folder *const folder,
                                     struct dig_error *const error)
 {
-    assert(path != NULL && folder != NULL);
-    char                  table[PATH_MAX];
+    assert(table != NULL && folder != NULL);
     char                  file[PATH_MAX];
     struct dig_job_folder found  = { .lock_fd = -1 };
-    size_t                length = (size_t)snprintf(table, sizeof table, "%s", path);
-    while (length > 1 && length < sizeof table && table[length - 1] == '/') {
-        table[--length] = '\0';
-    }
-    if (length >= sizeof suffix && length < sizeof table &&
-        strcmp(table + length - (sizeof suffix - 1), suffix) == 0) {
-        table[length - (sizeof suffix - 1)] = '\0';
-    }
-    enum dig_status status = find(table, &found, error);
+    enum dig_status       status = find(table, &found, error);
     if (status == DIG_OK) {
         status = check_folder(&found, error);
     }

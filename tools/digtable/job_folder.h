@@ -39,8 +39,8 @@ DIG_MUST_CHECK enum dig_status dig_job_folder_make(const char                  *
 DIG_MUST_CHECK enum dig_status dig_job_folder_make_rooms(const struct dig_job_folder *folder,
                                                          struct dig_error            *error);
 
-/// The folder, or that of a table, to look at.
-DIG_MUST_CHECK enum dig_status dig_job_folder_open(const char *path, struct dig_job_folder *folder,
+/// The folder of a table, to look at.
+DIG_MUST_CHECK enum dig_status dig_job_folder_open(const char *table, struct dig_job_folder *folder,
                                                    struct dig_error *error);
 
 /// Lets go of the lock; harmless without.
