@@ -14,15 +14,9 @@
 #define BAR_COLUMNS  22
 #define VALUE_COLUMN 10
 
-// Below 80 columns words and digits are left out.
-static bool is_narrow(const struct digwatch_grid *const grid)
-{
-    return grid->columns < 80;
-}
-
 static int clock_column(const struct digwatch_grid *const grid)
 {
-    return grid->columns - (is_narrow(grid) ? 20 : 31);
+    return grid->columns - 31;
 }
 
 static void put_clock(const struct digwatch_model *const model, struct digwatch_grid *const grid)
@@ -31,8 +25,7 @@ static void put_clock(const struct digwatch_model *const model, struct digwatch_
     struct tm    utc;
     char         text[32] = "";
     if (model->messages == 0 || seconds < 0 || gmtime_r(&seconds, &utc) == NULL ||
-        strftime(text, sizeof text, is_narrow(grid) ? "%H:%M:%S UTC" : "%Y-%m-%d %H:%M:%S UTC",
-                 &utc) == 0) {
+        strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &utc) == 0) {
         text[0] = '\0'; // of no time that people have
     }
     (void)digwatch_grid_put(grid, 0, clock_column(grid), DIGWATCH_PLAIN, "%.23s", text);
@@ -57,12 +50,12 @@ static void put_head(const struct digwatch_model *const model,
 
 static void put_chart_title(const double unit_Nm, struct digwatch_grid *const grid, const int row)
 {
-    int column = digwatch_grid_put(grid, row, 0, DIGWATCH_TITLE, "Moment%s, %s  ",
-                                   is_narrow(grid) ? "" : " about the bucket pin",
-                                   unit_Nm > 1.0 ? "kNm" : "Nm");
-    column     = digwatch_grid_put(grid, row, column, DIGWATCH_MEASURED, "%s measured  ",
+    int column =
+        digwatch_grid_put(grid, row, 0, DIGWATCH_TITLE, "Moment about the bucket pin, %s  ",
+                          unit_Nm > 1.0 ? "kNm" : "Nm");
+    column = digwatch_grid_put(grid, row, column, DIGWATCH_MEASURED, "%s measured  ",
                                grid->ascii ? "#" : "--");
-    column     = digwatch_grid_put(grid, row, column, DIGWATCH_PREDICTED, "%s predicted  ",
+    column = digwatch_grid_put(grid, row, column, DIGWATCH_PREDICTED, "%s predicted  ",
                                grid->ascii ? "-" : "..");
     if (!grid->ascii) {
         digwatch_grid_set(grid, row, column++, 0x2591, DIGWATCH_FAINT);
@@ -93,21 +86,19 @@ static void put_phase(const struct digwatch_estimate *const e, struct digwatch_g
     if (!isfinite(e->progress)) {
         return;
     }
-    const int wide = is_narrow(grid) ? grid->columns - column - 6 : BAR_COLUMNS;
-    for (int i = 0; i < wide; i++) {
-        const bool done = i < (int)lround(e->progress * wide);
+    for (int i = 0; i < BAR_COLUMNS; i++) {
+        const bool done = i < (int)lround(e->progress * BAR_COLUMNS);
         digwatch_grid_set(grid, row, column + i, done ? '=' : '-',
                           done ? DIGWATCH_PLAIN : DIGWATCH_FAINT);
     }
-    (void)digwatch_grid_put(grid, row, column + wide, DIGWATCH_PLAIN, " %.0f %%",
+    (void)digwatch_grid_put(grid, row, column + BAR_COLUMNS, DIGWATCH_PLAIN, " %.0f %%",
                             100.0 * e->progress);
 }
 
 static void put_moment(const struct digwatch_estimate *const e, const double unit_Nm,
                        struct digwatch_grid *const grid, const int row)
 {
-    const char *const unit   = unit_Nm > 1.0 ? "kNm" : "Nm";
-    const int         digits = is_narrow(grid) ? 1 : 2;
+    const char *const unit = unit_Nm > 1.0 ? "kNm" : "Nm";
     put_name(grid, row, "Moment");
     put_name(grid, row + 1, "Residual");
     if (!e->moment_valid) {
@@ -115,8 +106,8 @@ static void put_moment(const struct digwatch_estimate *const e, const double uni
         return;
     }
     const int column =
-        digwatch_grid_put(grid, row, VALUE_COLUMN, DIGWATCH_MEASURED, "%.*f +- %.*f %s", digits,
-                          e->moment_Nm / unit_Nm, digits, e->sigma_Nm / unit_Nm, unit);
+        digwatch_grid_put(grid, row, VALUE_COLUMN, DIGWATCH_MEASURED, "%.2f +- %.2f %s",
+                          e->moment_Nm / unit_Nm, e->sigma_Nm / unit_Nm, unit);
     if (!isfinite(e->predicted_Nm)) {
         (void)digwatch_grid_put(grid, row + 1, VALUE_COLUMN, DIGWATCH_FAINT,
                                 "nothing is predicted");
@@ -124,26 +115,24 @@ static void put_moment(const struct digwatch_estimate *const e, const double uni
     }
     const double off = e->moment_Nm - e->predicted_Nm;
     (void)digwatch_grid_put(
-        grid, row, column, DIGWATCH_PREDICTED, ", predicted %.*f (%.*f to %.*f)", digits,
-        e->predicted_Nm / unit_Nm, digits,
-        (e->predicted_Nm - DIGWATCH_BAND_SIGMAS * e->predicted_sigma_Nm) / unit_Nm, digits,
+        grid, row, column, DIGWATCH_PREDICTED, ", predicted %.2f (%.2f to %.2f)",
+        e->predicted_Nm / unit_Nm,
+        (e->predicted_Nm - DIGWATCH_BAND_SIGMAS * e->predicted_sigma_Nm) / unit_Nm,
         (e->predicted_Nm + DIGWATCH_BAND_SIGMAS * e->predicted_sigma_Nm) / unit_Nm);
-    (void)digwatch_grid_put(grid, row + 1, VALUE_COLUMN, DIGWATCH_PLAIN, "%+.*f %s, %+.1f sigma",
-                            digits, off / unit_Nm, unit, off / e->predicted_sigma_Nm);
+    (void)digwatch_grid_put(grid, row + 1, VALUE_COLUMN, DIGWATCH_PLAIN, "%+.2f %s, %+.1f sigma",
+                            off / unit_Nm, unit, off / e->predicted_sigma_Nm);
 }
 
 static void put_errors(const struct digwatch_model *const model, struct digwatch_grid *const grid,
                        const int row)
 {
-    const bool narrow = is_narrow(grid);
-    int        column = VALUE_COLUMN + (narrow ? 23 : 27);
+    int column = VALUE_COLUMN + 27;
     if (model->now.whole2 > 0.0) {
-        column = digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "this dig %.0f %%%s",
-                                   100.0 * digwatch_error(&model->now), narrow ? ", " : " off  ");
+        column = digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "this dig %.0f %% off  ",
+                                   100.0 * digwatch_error(&model->now));
     }
     if (model->before.whole2 > 0.0) {
-        (void)digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "%s %.0f %%",
-                                narrow ? "before" : "the dig before",
+        (void)digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "the dig before %.0f %%",
                                 100.0 * digwatch_error(&model->before));
     }
 }
@@ -160,12 +149,11 @@ static void put_prediction(const struct digwatch_model *const model, const doubl
         return;
     }
     (void)digwatch_grid_put(grid, row, VALUE_COLUMN, DIGWATCH_PREDICTED,
-                            "%s:%s %.1f +- %.1f %s,%s %.4g +- %.2g %s%s", p->curve.trajectory,
-                            is_narrow(grid) ? "" : " peak", p->curve.peak_Nm / unit_Nm,
+                            "%s: peak %.1f +- %.1f %s, energy %.4g +- %.2g %s%s",
+                            p->curve.trajectory, p->curve.peak_Nm / unit_Nm,
                             p->curve.peak_sigma_Nm / unit_Nm, unit_Nm > 1.0 ? "kNm" : "Nm",
-                            is_narrow(grid) ? "" : " energy", p->curve.energy_J / unit_Nm,
-                            p->curve.energy_sigma_J / unit_Nm, unit_Nm > 1.0 ? "kJ" : "J",
-                            p->outside ? " (nearest gravel)" : "");
+                            p->curve.energy_J / unit_Nm, p->curve.energy_sigma_J / unit_Nm,
+                            unit_Nm > 1.0 ? "kJ" : "J", p->outside ? " (nearest gravel)" : "");
 }
 
 static void put_gravel(const struct digwatch_model *const model, struct digwatch_grid *const grid,
@@ -181,25 +169,18 @@ static void put_gravel(const struct digwatch_model *const model, struct digwatch
     }
     put_name(grid, row + 1, "  90 %");
     for (int a = 0; a < DIG_AXES; a++) {
-        const int column = VALUE_COLUMN + (is_narrow(grid) ? 16 : 18) * a;
+        const int column = VALUE_COLUMN + 18 * a;
         const int digits = a == DIG_AXIS_DENSITY_kgpm3 ? 0 : 2;
         (void)digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "%s %.*f%s", name[a], digits,
                                 m->gravel.value[a], digits == 0 ? " kg/m3" : "");
         (void)digwatch_grid_put(grid, row + 1, column, DIGWATCH_PLAIN, "%.*f to %.*f", digits,
                                 m->low.value[a], digits, m->high.value[a]);
     }
-    char of[64];
-    (void)snprintf(of, sizeof of, "%d dig%s%s", m->digs, m->digs == 1 ? "" : "s",
-                   m->going_on ? ", early" : "");
-    const char *const by = m->forces ? "with force" : "moment alone";
-    if (is_narrow(grid)) {
-        (void)digwatch_grid_put(grid, row + 2, VALUE_COLUMN, DIGWATCH_PLAIN, "%s, %s%s%s", of, by,
-                                m->untold[0] != '\0' ? "; not told: " : "", m->untold);
-        return;
-    }
     const int column = VALUE_COLUMN + 18 * DIG_AXES + 4;
-    (void)digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "%s", of);
-    (void)digwatch_grid_put(grid, row + 1, column, DIGWATCH_PLAIN, "%s", by);
+    (void)digwatch_grid_put(grid, row, column, DIGWATCH_PLAIN, "%d dig%s%s", m->digs,
+                            m->digs == 1 ? "" : "s", m->going_on ? ", early" : "");
+    (void)digwatch_grid_put(grid, row + 1, column, DIGWATCH_PLAIN, "%s",
+                            m->forces ? "with force" : "moment alone");
     if (m->untold[0] != '\0') {
         (void)digwatch_grid_put(grid, row + 2, VALUE_COLUMN, DIGWATCH_PLAIN,
                                 "a family resists alike; not told: %s", m->untold);

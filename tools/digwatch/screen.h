@@ -8,7 +8,7 @@
 
 /// The least that is drawn; a smaller grid asks for more.
 #define DIGWATCH_ROWS_LEAST    18
-#define DIGWATCH_COLUMNS_LEAST 60
+#define DIGWATCH_COLUMNS_LEAST 80
 
 struct digwatch_view {
     const char *source;   // what is watched, for people
