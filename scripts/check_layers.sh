@@ -27,7 +27,7 @@ core                   approach bed bed_plan chance command_line contact curve d
                        recording regular room sample scene sha256 shell similar sort status streams table_step text units vec2
 files/text             whole | csv
 files/yaml             yaml | yaml_schema
-files/lcm              health_text lcm_datagram lcm_log lcm_message predicted_curve
+files/lcm              health_text lcm_datagram lcm_log lcm_message matched_gravel predicted_curve
 files                  bed_csv campaign_yaml curves_csv grid_yaml identity_json job_plan machine_yaml model_json
                        recording_csv scene_yaml
 estimator              estimator

@@ -137,7 +137,7 @@ TEST_WITH(what_is_no_message_is_counted_and_changes_nothing, fresh, NULL)
         }
     }
     assert_int_equal(model.misread, 4 * 65);
-    assert_false(model.any_estimate || model.match.valid || model.prediction.valid ||
+    assert_false(model.any_estimate || model.match.known || model.prediction.valid ||
                  model.any_health);
 }
 
@@ -191,7 +191,7 @@ TEST_WITH(numbers_that_are_none_and_names_that_are_none_are_not_taken, fresh, NU
 
     digsight_match_t m = match_of((double)NAN);
     say_match(&model, &m);
-    assert_false(model.match.valid);
+    assert_false(model.match.known);
     char command[] = "\033]0;owned\007dig";
     m              = match_of(0.46);
     m.wanted       = command;

@@ -7,6 +7,7 @@
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
 #include "files/lcm/lcm_log.h"
+#include "files/lcm/matched_gravel.h"
 #include "files/lcm/predicted_curve.h"
 #include "files/recording_csv.h"
 
@@ -27,30 +28,20 @@ struct published {
 static void take_match(void *const context, const int64_t time_us, const digsight_match_t *const m)
 {
     (void)time_us;
-    struct published *const published = context;
-    const struct dig_gravel gravel[]  = {
-         { { m->friction, m->rolling, m->density_kgpm3 } },
-         { { m->friction_low, m->rolling_low, m->density_low_kgpm3 } },
-         { { m->friction_high, m->rolling_high, m->density_high_kgpm3 } },
-         { { m->nearest_friction, m->nearest_rolling, m->nearest_density_kgpm3 } },
-    };
-    bool finite = isfinite(m->distance);
-    for (size_t i = 0; i < sizeof gravel / sizeof gravel[0]; i++) {
-        for (int a = 0; a < DIG_AXES; a++) {
-            finite = finite && isfinite(gravel[i].value[a]);
-        }
-    }
+    struct published *const   published = context;
+    struct dig_matched_gravel g;
     // A later match is of a later dig. A log holds what anybody on the network sent.
-    if (!m->valid || m->going_on || published->predicted || !finite) {
+    if (published->predicted || !isfinite(m->distance) || !dig_matched_gravel_take(m, &g) ||
+        !g.known || g.going_on) {
         return;
     }
     published->matched       = true;
-    published->forces        = m->forces != 0;
+    published->forces        = g.forces;
     published->matched_dig   = (uint32_t)m->dig_count;
-    published->run->gravel   = gravel[0];
-    published->run->low      = gravel[1];
-    published->run->high     = gravel[2];
-    published->run->nearest  = gravel[3];
+    published->run->gravel   = g.gravel;
+    published->run->low      = g.low;
+    published->run->high     = g.high;
+    published->run->nearest  = g.nearest;
     published->run->distance = m->distance;
 }
 

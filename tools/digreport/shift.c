@@ -193,15 +193,6 @@ static void count_endings(struct digreport_shift *const shift, const digsight_he
     memcpy(shift->log_ended, now, sizeof now);
 }
 
-static bool is_gravel(const struct dig_gravel *const gravel)
-{
-    int a = 0;
-    while (a < DIG_AXES && isfinite(gravel->value[a]) && fabs(gravel->value[a]) < 1e6) {
-        a++;
-    }
-    return a == DIG_AXES;
-}
-
 // MATCH comes once a second; what is new has another time, or has ended.
 static void take_match(void *const context, const int64_t log_us,
                        const digsight_match_t *const said)
@@ -214,19 +205,8 @@ static void take_match(void *const context, const int64_t log_us,
     if (said->going_on || (said->time_ns == shift->match_ns && known == shift->match_known)) {
         return;
     }
-    struct digreport_gravel g = {
-        .time_us = time_us,
-        .known   = known,
-        .outside = said->outside != 0,
-        .forces  = said->forces != 0,
-        .gravel  = { { said->friction, said->rolling, said->density_kgpm3 } },
-        .low     = { { said->friction_low, said->rolling_low, said->density_low_kgpm3 } },
-        .high    = { { said->friction_high, said->rolling_high, said->density_high_kgpm3 } },
-        .digs    = said->digs,
-    };
-    dig_text_copy(DIGREPORT_TEXT, g.untold, said->untold);
-    dig_text_copy(DIGREPORT_TEXT, g.wanted, said->wanted);
-    if (known && (!is_gravel(&g.gravel) || !is_gravel(&g.low) || !is_gravel(&g.high))) {
+    struct digreport_gravel g = { .time_us = time_us };
+    if (!dig_matched_gravel_take(said, &g.match)) {
         return;
     }
     struct digreport_gravel *const grown =
@@ -238,11 +218,11 @@ static void take_match(void *const context, const int64_t log_us,
     shift->gravel[shift->gravels++] = g;
     shift->match_ns                 = said->time_ns;
     shift->match_known              = known;
-    if (known && g.outside) {
+    if (known && g.match.outside) {
         add_event(shift, time_us, &outside, "", 0);
     }
     if (!known) {
-        add_event(shift, time_us, NULL, g.wanted, 0);
+        add_event(shift, time_us, NULL, g.match.wanted, 0);
     }
 }
 
@@ -343,13 +323,13 @@ enum dig_status digreport_shift_log(struct digreport_shift *const shift, const c
                                    : dig_error_set(error, status, "%s: out of memory", log);
 }
 
-const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_shift *const shift,
-                                                         const int64_t time_us)
+const struct dig_matched_gravel *
+digreport_shift_gravel_at(const struct digreport_shift *const shift, const int64_t time_us)
 {
     assert(shift != NULL);
-    const struct digreport_gravel *found = NULL;
+    const struct dig_matched_gravel *found = NULL;
     for (size_t i = 0; i < shift->gravels && shift->gravel[i].time_us <= time_us; i++) {
-        found = &shift->gravel[i];
+        found = &shift->gravel[i].match;
     }
     return found != NULL && found->known ? found : NULL;
 }

@@ -6,17 +6,15 @@
 #include "core/error.h"
 #include "files/lcm/health_text.h"
 #include "files/lcm/lcm_message.h"
+#include "files/lcm/matched_gravel.h"
 #include "tools/digreport/shift_dig.h"
 
 #define DIGREPORT_TEXT 256
 
 /// A match, or the end of one.
 struct digreport_gravel {
-    int64_t           time_us;
-    bool              known, outside, forces;
-    struct dig_gravel gravel, low, high;
-    int32_t           digs;                                           // matched together
-    char              untold[DIGREPORT_TEXT], wanted[DIGREPORT_TEXT]; // as the daemon said them
+    int64_t                   time_us;
+    struct dig_matched_gravel match;
 };
 
 /// A trouble, from its first to its last sign; signs less than a minute apart are one.
@@ -75,8 +73,8 @@ DIG_MUST_CHECK enum dig_status digreport_shift_log(struct digreport_shift *shift
                                                    struct dig_error *error);
 
 /// The gravel known at a time; NULL: none.
-const struct digreport_gravel *digreport_shift_gravel_at(const struct digreport_shift *shift,
-                                                         int64_t                       time_us);
+const struct dig_matched_gravel *digreport_shift_gravel_at(const struct digreport_shift *shift,
+                                                           int64_t                       time_us);
 
 /// The median of the digs' errors that are known, and of their noise floors; NaN for none. Returns
 /// how many there are.

@@ -3,7 +3,6 @@
 #include "closed_loop/report/html.h"
 #include "closed_loop/report/plot.h"
 #include "closed_loop/report/report.h"
-#include "core/text.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -22,16 +21,16 @@ static void put_gravel_plot(const struct digreport_page *const page, FILE *const
         return;
     }
     for (size_t i = 0; i < shift->gravels; i++) {
-        const struct digreport_gravel *const g = &shift->gravel[i];
-        const int64_t                        end_us =
+        const struct dig_matched_gravel *const g = &shift->gravel[i].match;
+        const int64_t                          end_us =
             i + 1 < shift->gravels ? shift->gravel[i + 1].time_us : shift->last_us;
         for (size_t end = 0; end < 3; end++) {
             const size_t at    = 3 * i + end;
             const bool   shown = g->known && end < 2;
-            all[at]            = digreport_page_time(page, end == 0 ? g->time_us : end_us);
-            all[n + at]        = shown ? g->gravel.value[axis] : (double)NAN;
-            all[2 * n + at]    = shown ? g->low.value[axis] : (double)NAN;
-            all[3 * n + at]    = shown ? g->high.value[axis] : (double)NAN;
+            all[at]     = digreport_page_time(page, end == 0 ? shift->gravel[i].time_us : end_us);
+            all[n + at] = shown ? g->gravel.value[axis] : (double)NAN;
+            all[2 * n + at] = shown ? g->low.value[axis] : (double)NAN;
+            all[3 * n + at] = shown ? g->high.value[axis] : (double)NAN;
         }
     }
     static const char *const label[DIG_AXES] = { "friction, no unit", "rolling friction, no unit",
@@ -53,10 +52,11 @@ static void put_gravel_plot(const struct digreport_page *const page, FILE *const
     free(all);
 }
 
-static void put_gravel_row(FILE *const to, const struct digreport_gravel *const g)
+static void put_gravel_row(FILE *const to, const struct digreport_gravel *const gravel)
 {
+    const struct dig_matched_gravel *const g = &gravel->match;
     (void)fputs("<tr>", to);
-    digreport_page_time_cell(to, g->time_us);
+    digreport_page_time_cell(to, gravel->time_us);
     if (!g->known) {
         dig_html_put(to, "<td colspan=5>not known any more: %s</td></tr>\n", g->wanted);
         return;
@@ -70,10 +70,7 @@ static void put_gravel_row(FILE *const to, const struct digreport_gravel *const 
                   g->digs, g->forces ? "with force" : "moment alone",
                   g->outside ? "outside the table: the nearest" : "");
     if (g->untold[0] != '\0') {
-        char untold[DIGREPORT_TEXT];
-        dig_text_copy(sizeof untold, untold, g->untold);
-        dig_axes_without_units(untold);
-        dig_html_put(to, "a family; not told: %s", untold);
+        dig_html_put(to, "a family; not told: %s", g->untold_words);
     }
     (void)fputs("</td></tr>\n", to);
 }

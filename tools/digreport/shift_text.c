@@ -25,10 +25,10 @@ static void put_duration(const int64_t us, FILE *const to)
 void digreport_shift_sentence(const struct digreport_shift *const shift, FILE *const to)
 {
     assert(shift != NULL && to != NULL);
-    double                               error;
-    double                               floor;
-    const size_t                         n = digreport_shift_error(shift, &error, &floor);
-    const struct digreport_gravel *const g = digreport_shift_gravel_at(shift, INT64_MAX);
+    double                                 error;
+    double                                 floor;
+    const size_t                           n = digreport_shift_error(shift, &error, &floor);
+    const struct dig_matched_gravel *const g = digreport_shift_gravel_at(shift, INT64_MAX);
     (void)fprintf(to, "%zu dig%s in ", shift->digs, shift->digs == 1 ? "" : "s");
     put_duration(shift->last_us - shift->first_us, to);
     size_t aborted = 0;
@@ -39,13 +39,13 @@ void digreport_shift_sentence(const struct digreport_shift *const shift, FILE *c
         (void)fprintf(to, ", %zu aborted", aborted);
     }
     if (g != NULL) {
-        (void)fprintf(
-            to,
-            "; the gravel at the end: friction %.2f (%.2f to %.2f), rolling friction %.2f "
-            "(%.2f to %.2f), density %.0f (%.0f to %.0f) kg/m3",
-            g->gravel.value[0], g->low.value[0], g->high.value[0], g->gravel.value[1],
-            g->low.value[1], g->high.value[1], g->gravel.value[2], g->low.value[2],
-            g->high.value[2]);
+        const double *const at   = g->gravel.value;
+        const double *const low  = g->low.value;
+        const double *const high = g->high.value;
+        (void)fprintf(to,
+                      "; the gravel at the end: friction %.2f (%.2f to %.2f), rolling friction "
+                      "%.2f (%.2f to %.2f), density %.0f (%.0f to %.0f) kg/m3",
+                      at[0], low[0], high[0], at[1], low[1], high[1], at[2], low[2], high[2]);
     } else {
         (void)fputs("; no gravel was known at the end", to);
     }
@@ -65,8 +65,8 @@ struct number {
 
 enum { OF_GRAVEL = 9, OF_DIG = 11 };
 
-static void numbers_of_gravel(const struct digreport_gravel *const g,
-                              struct number                        number[const OF_GRAVEL])
+static void numbers_of_gravel(const struct dig_matched_gravel *const g,
+                              struct number                          number[const OF_GRAVEL])
 {
     static const char *const name[OF_GRAVEL] = {
         "friction",     "friction_low",  "friction_high",     "rolling",           "rolling_low",
@@ -159,8 +159,8 @@ void digreport_shift_json(const struct digreport_shift *const shift, FILE *const
     }
     (void)fputs("],\n\"gravels\": [", to);
     for (size_t i = 0; i < shift->gravels; i++) {
-        const struct digreport_gravel *const g = &shift->gravel[i];
-        digreport_time(g->time_us, from);
+        const struct dig_matched_gravel *const g = &shift->gravel[i].match;
+        digreport_time(shift->gravel[i].time_us, from);
         (void)fputs(i == 0 ? "\n " : ",\n ", to);
         dig_json_put(to,
                      "{\"time_utc\": %s, \"known\": %i, \"outside\": %i, \"forces\": %i, "

@@ -17,15 +17,6 @@ static bool is_time(const int64_t time_ns)
     return time_ns >= 0 && time_ns <= (int64_t)1 << 62;
 }
 
-static bool are_finite(const int n, const double number[])
-{
-    int i = 0;
-    while (i < n && isfinite(number[i])) {
-        i++;
-    }
-    return i == n;
-}
-
 static void take_name(char name[DIG_NAME_SIZE], const char *const said)
 {
     (void)snprintf(name, DIG_NAME_SIZE, "%s",
@@ -138,26 +129,7 @@ static void take_match(void *const context, const int64_t time_us,
 {
     struct digwatch_model *const m = context;
     (void)time_us;
-    struct digwatch_match match = {
-        .valid      = said->valid != 0,
-        .outside    = said->outside != 0,
-        .forces     = said->forces != 0,
-        .going_on   = said->going_on != 0,
-        .gravel     = { { said->friction, said->rolling, said->density_kgpm3 } },
-        .low        = { { said->friction_low, said->rolling_low, said->density_low_kgpm3 } },
-        .high       = { { said->friction_high, said->rolling_high, said->density_high_kgpm3 } },
-        .digs       = said->digs,
-        .expires_ns = said->expires_ns,
-    };
-    if (match.valid &&
-        !(are_finite(DIG_AXES, match.gravel.value) && are_finite(DIG_AXES, match.low.value) &&
-          are_finite(DIG_AXES, match.high.value))) {
-        return;
-    }
-    dig_text_copy(DIGWATCH_TEXT, match.untold, said->untold);
-    dig_axes_without_units(match.untold);
-    dig_text_copy(DIGWATCH_TEXT, match.wanted, said->wanted);
-    m->match = match;
+    (void)dig_matched_gravel_take(said, &m->match);
 }
 
 static void take_prediction(void *const context, const int64_t time_us,
@@ -243,7 +215,7 @@ struct digwatch_slot digwatch_model_slot(const struct digwatch_model *const mode
 bool digwatch_model_match_holds(const struct digwatch_model *const model)
 {
     assert(model != NULL);
-    return model->match.valid &&
+    return model->match.known &&
            !has_expired(model, model->match.expires_ns, model->estimate.time_ns);
 }
 

@@ -8,6 +8,7 @@
 #include "core/curve.h"
 #include "files/lcm/health_text.h"
 #include "files/lcm/lcm_message.h"
+#include "files/lcm/matched_gravel.h"
 #include "files/lcm/predicted_curve.h"
 
 #include <stdbool.h>
@@ -24,14 +25,6 @@ struct digwatch_estimate {
     char    trajectory[DIG_NAME_SIZE];        // "" while it is not known
     double  progress;                         // NaN while it is not known
     double  predicted_Nm, predicted_sigma_Nm; // here; NaN: no prediction
-};
-
-struct digwatch_match {
-    bool              valid, outside, forces, going_on;
-    struct dig_gravel gravel, low, high;
-    int32_t           digs;
-    int64_t           expires_ns;
-    char              untold[DIGWATCH_TEXT], wanted[DIGWATCH_TEXT];
 };
 
 struct digwatch_prediction {
@@ -69,7 +62,7 @@ struct digwatch_model {
     int64_t                    misread_us; // when the last of these came
     bool                       any_estimate, any_health;
     struct digwatch_estimate   estimate;
-    struct digwatch_match      match;
+    struct dig_matched_gravel  match;
     struct digwatch_prediction prediction;
     struct digwatch_health     health;
     int64_t                    health_us;   // wall clock of that

@@ -159,8 +159,8 @@ static void put_prediction(const struct digwatch_model *const model, const doubl
 static void put_gravel(const struct digwatch_model *const model, struct digwatch_grid *const grid,
                        const int row)
 {
-    static const char *const           name[DIG_AXES] = { "friction", "rolling", "density" };
-    const struct digwatch_match *const m              = &model->match;
+    static const char *const               name[DIG_AXES] = { "friction", "rolling", "density" };
+    const struct dig_matched_gravel *const m              = &model->match;
     put_name(grid, row, "Gravel");
     if (!digwatch_model_match_holds(model)) {
         (void)digwatch_grid_put(grid, row, VALUE_COLUMN, DIGWATCH_FAINT,
@@ -183,7 +183,7 @@ static void put_gravel(const struct digwatch_model *const model, struct digwatch
                             m->forces ? "with force" : "moment alone");
     if (m->untold[0] != '\0') {
         (void)digwatch_grid_put(grid, row + 2, VALUE_COLUMN, DIGWATCH_PLAIN,
-                                "a family resists alike; not told: %s", m->untold);
+                                "a family resists alike; not told: %s", m->untold_words);
     }
 }
 

@@ -55,13 +55,13 @@ static void add_health(struct list *const list, const struct digwatch_health *co
 
 static void add_ground(struct list *const list, const struct digwatch_model *const model)
 {
-    const struct digwatch_match *const m = &model->match;
+    const struct dig_matched_gravel *const m = &model->match;
     if (m->wanted[0] != '\0') {
         add(list, "", "wanted: %s", m->wanted);
-    } else if (m->valid && !digwatch_model_match_holds(model)) {
+    } else if (m->known && !digwatch_model_match_holds(model)) {
         add(list, "dig a simple dig", "the gravel known is too old");
     }
-    if (m->valid && m->outside) {
+    if (m->known && m->outside) {
         add(list, "do not rely on predictions; use a table that holds this ground",
             "the ground is none of the table's gravels");
     }
