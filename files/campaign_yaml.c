@@ -87,8 +87,7 @@ static void require_once(const struct dig_campaign *const campaign, const size_t
     }
 }
 
-static void take(const char *const yaml, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const yaml, void *const loaded, struct dig_conditions *const c)
 {
     struct dig_campaign *const campaign = loaded;
     resolve(yaml, "scene", campaign->scene, c);
@@ -98,9 +97,6 @@ static void take(const char *const yaml, void *const loaded, void *const into,
     for (size_t i = 0; i < campaign->recordings; i++) {
         take_recording(yaml, i, &campaign->recording[i], c);
         require_once(campaign, i, c);
-    }
-    if (c->status == DIG_OK) {
-        *(struct dig_campaign *)into = *campaign;
     }
 }
 

@@ -77,24 +77,20 @@ static void check_length(const char *const key, const char *const label,
                 NAME_MAX_LENGTH);
 }
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
-    const struct dig_curve_map *const text = loaded;
-    struct dig_curve_map              map  = *text;
-    dig_require(c, dig_path_beside(path, text->scene, sizeof map.scene, map.scene),
+    struct dig_curve_map *const map   = loaded;
+    const struct dig_curve_map  asked = *map;
+    dig_require(c, dig_path_beside(path, asked.scene, sizeof map->scene, map->scene),
                 "scene: expected a shorter path");
-    check_length("engine", map.engine, c);
-    check_length("version", map.version, c);
-    check_label("engine", map.engine, c);
-    check_label("version", map.version, c);
+    check_length("engine", map->engine, c);
+    check_length("version", map->version, c);
+    check_label("engine", map->engine, c);
+    check_label("version", map->version, c);
     for (int f = 0; f < DIG_MAP_FIELDS; f++) {
-        struct dig_map_column *const column = &map.field[f];
+        struct dig_map_column *const column = &map->field[f];
         column->factor                      = fabs(column->factor) > 0.0 ? column->factor : 1.0;
         check_field((enum dig_map_field)f, column, c);
-    }
-    if (c->status == DIG_OK) {
-        *(struct dig_curve_map *)into = map;
     }
 }
 

@@ -94,7 +94,9 @@ static const struct dig_yaml_field fields[] = {
     END,
 };
 
-static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct grid_text) };
+static const struct dig_yaml_file schema = { .of   = fields,
+                                             .size = sizeof(struct grid_text),
+                                             .kept = sizeof(struct dig_grid) };
 
 // A list at a key.
 static void check_ascending(const char *const list, const size_t count, const double value[],
@@ -239,8 +241,7 @@ static void convert_approaches(const struct grid_text *const text, struct dig_gr
     }
 }
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     struct grid_text *const text = loaded;
     struct dig_grid *const  grid = &text->grid;
@@ -254,9 +255,6 @@ static void take(const char *const path, void *const loaded, void *const into,
     convert_effects(text, grid, c);
     check_approaches(text, c);
     check_grid(grid, c);
-    if (c->status == DIG_OK) {
-        *(struct dig_grid *)into = *grid;
-    }
 }
 
 enum dig_status dig_grid_read(const char *const path, struct dig_grid *const grid,

@@ -91,6 +91,7 @@ static const struct dig_yaml_field fields[] = {
 
 static const struct dig_yaml_file schema = { .of       = fields,
                                              .size     = sizeof(struct identity_text),
+                                             .kept     = sizeof(struct dig_identity),
                                              .defaults = &defaults };
 
 static bool is_gravel(const struct dig_gravel *const g)
@@ -116,8 +117,7 @@ static void check_approach(const char *const key, const struct dig_approach *con
         "%s: expected a depth of 0.2 to 3 with an attack of at most 45 deg either way", key);
 }
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     struct identity_text *const text = loaded;
     struct dig_identity *const  read = &text->identity;
@@ -155,9 +155,6 @@ static void take(const char *const path, void *const loaded, void *const into,
     }
     dig_require(c, is_gravel(&m->gravel),
                 "gravel: is no gravel, expected friction and rolling >= 0, density > 0");
-    if (c->status == DIG_OK) {
-        *(struct dig_identity *)into = *read;
-    }
 }
 
 // Depths, and attacks in rad, nearer than this are one.

@@ -26,8 +26,7 @@ static const struct dig_yaml_field fields[] = {
 
 static const struct dig_yaml_file schema = { .of = fields, .size = sizeof(struct dig_job_plan) };
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     const struct dig_job_plan *const plan = loaded;
     (void)path;
@@ -35,9 +34,6 @@ static void take(const char *const path, void *const loaded, void *const into,
     dig_require(c, dig_name_ok(plan->job), "job: \"%s\", expected " DIG_NAME_RULE, plan->job);
     dig_require(c, plan->beds >= plan->tasks, "beds: %zu, expected %zu (the tasks) or more",
                 plan->beds, plan->tasks);
-    if (c->status == DIG_OK) {
-        *(struct dig_job_plan *)into = *plan;
-    }
 }
 
 enum dig_status dig_job_plan_read(const char *const path, struct dig_job_plan *const plan,

@@ -140,7 +140,9 @@ static const struct dig_yaml_field rig_fields[] = {
     TOLERANCE,
     END,
 };
-static const struct dig_yaml_file rig = { .of = rig_fields, .size = sizeof(struct machine_text) };
+static const struct dig_yaml_file rig = { .of   = rig_fields,
+                                          .size = sizeof(struct machine_text),
+                                          .kept = sizeof(struct dig_machine) };
 
 static const struct dig_yaml_field machine_fields[] = {
     NAME,
@@ -155,10 +157,10 @@ static const struct dig_yaml_field machine_fields[] = {
     END,
 };
 static const struct dig_yaml_file digger = { .of   = machine_fields,
-                                             .size = sizeof(struct machine_text) };
+                                             .size = sizeof(struct machine_text),
+                                             .kept = sizeof(struct dig_machine) };
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     struct machine_text *const text    = loaded;
     struct dig_machine *const  machine = &text->machine;
@@ -169,9 +171,6 @@ static void take(const char *const path, void *const loaded, void *const into,
     c->status = dig_machine_check(machine, c->error);
     if (c->status == DIG_OK) {
         c->status = dig_geometry_check(machine, c->error);
-    }
-    if (c->status == DIG_OK) {
-        *(struct dig_machine *)into = *machine;
     }
 }
 

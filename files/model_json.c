@@ -103,6 +103,7 @@ static const struct dig_yaml_field fields[] = {
 
 static const struct dig_yaml_file schema = { .of       = fields,
                                              .size     = sizeof(struct model_text),
+                                             .kept     = sizeof(struct dig_model),
                                              .defaults = &defaults };
 
 static void take_effect(const struct effect_text *const text, struct dig_model_effect *const out,
@@ -121,8 +122,7 @@ static void take_effect(const struct effect_text *const text, struct dig_model_e
     }
 }
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     struct model_text *const text = loaded;
     struct dig_model *const  m    = &text->model;
@@ -142,9 +142,6 @@ static void take(const char *const path, void *const loaded, void *const into,
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             m->unlisted.share[from->trajectory][from->channel][k] = (float)from->share[k];
         }
-    }
-    if (c->status == DIG_OK) {
-        *(struct dig_model *)into = *m;
     }
 }
 

@@ -89,10 +89,10 @@ static const struct dig_yaml_field scene_fields[] = {
 };
 
 static const struct dig_yaml_file schema = { .of   = scene_fields,
-                                             .size = sizeof(struct scene_text) };
+                                             .size = sizeof(struct scene_text),
+                                             .kept = sizeof(struct dig_scene) };
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     struct scene_text *const text  = loaded;
     struct dig_scene *const  scene = &text->scene;
@@ -101,9 +101,6 @@ static void take(const char *const path, void *const loaded, void *const into,
     c->status = dig_bed_convert(&text->bed, &scene->bed, c->error);
     if (c->status == DIG_OK) {
         c->status = dig_scene_check(scene, c->error);
-    }
-    if (c->status == DIG_OK) {
-        *(struct dig_scene *)into = *scene;
     }
 }
 

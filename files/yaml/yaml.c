@@ -50,8 +50,7 @@ static enum dig_status load(const char *const path, yaml_document_t *const docum
 }
 
 enum dig_status dig_yaml_read(const char *const path, const struct dig_yaml_file *const schema,
-                              void (*const take)(const char *, void *, void *,
-                                                 struct dig_conditions *),
+                              void (*const take)(const char *, void *, struct dig_conditions *),
                               void *const into, struct dig_error *const error)
 {
     assert(path != NULL && schema != NULL && into != NULL);
@@ -66,8 +65,12 @@ enum dig_status dig_yaml_read(const char *const path, const struct dig_yaml_file
     if (status == DIG_OK) {
         struct dig_error      found = { "" };
         struct dig_conditions c     = { .error = &found };
-        take(path, loaded, into, &c);
-        status = c.status != DIG_OK ? refuse(path, &document, c.status, found.text, error) : DIG_OK;
+        take(path, loaded, &c);
+        if (c.status == DIG_OK) {
+            memcpy(into, loaded, schema->kept > 0 ? schema->kept : schema->size);
+        } else {
+            status = refuse(path, &document, c.status, found.text, error);
+        }
     }
     free(loaded);
     yaml_document_delete(&document);

@@ -8,14 +8,14 @@
 
 #include <stdio.h>
 
-/// Loads path by its schema and hands it to take(path, loaded, into, c), which may change what was
-/// loaded, and is to write *into only where all its conditions hold. Their words begin with the
-/// dotted key of a value ("parts[3].weight_kg: %g, expected …"). Unknown keys, missing keys and
-/// values of the wrong type or out of range are refused; *error reads "FILE:LINE: KEY: what was
-/// found, expected …".
+/// Loads path by its schema and hands it to take(path, loaded, c), which may change what was
+/// loaded; *into is written only where all its conditions hold. Their words begin with the dotted
+/// key of a value ("parts[3].weight_kg: %g, expected …"). Unknown keys, missing keys and values of
+/// the wrong type or out of range are refused; *error reads "FILE:LINE: KEY: what was found,
+/// expected …".
 DIG_MUST_CHECK enum dig_status dig_yaml_read(const char *path, const struct dig_yaml_file *schema,
                                              void (*take)(const char *path, void *loaded,
-                                                          void *into, struct dig_conditions *c),
+                                                          struct dig_conditions *c),
                                              void *into, struct dig_error *error);
 
 /// Writes the struct as one JSON object that dig_yaml_read() reads back, and a line feed. What is

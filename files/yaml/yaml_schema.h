@@ -44,6 +44,7 @@ struct dig_yaml_field {
 struct dig_yaml_file {
     const struct dig_yaml_field *of;
     size_t                       size;     // of the struct
+    size_t                       kept;     // of its beginning, which is what is read; 0: all of it
     const void                  *defaults; // such a struct; NULL: zeroed
 };
 

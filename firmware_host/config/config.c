@@ -241,8 +241,7 @@ static double take_input(struct config_text *const text, struct dig_conditions *
     return config->modbus.poll_s;
 }
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
     struct config_text *const text     = loaded;
     struct dig_config *const  config   = &text->config;
@@ -277,16 +276,15 @@ static void take(const char *const path, void *const loaded, void *const into,
     }
     dig_require(c, config->estimator.tick_s <= DIG_TICK_MOST_s,
                 "estimator.sample_s: missing, expected with input.modbus.poll_Hz below 10");
-    if (c->status == DIG_OK) {
-        *(struct dig_config *)into = *config;
-    }
 }
 
 enum dig_status dig_config_read(const char *const path, struct dig_config *const config,
                                 struct dig_error *const error)
 {
     const struct config_text   start  = defaults();
-    const struct dig_yaml_file schema = { .of = fields, .size = sizeof start, .defaults = &start };
+    const struct dig_yaml_file schema = {
+        .of = fields, .size = sizeof start, .kept = sizeof(struct dig_config), .defaults = &start
+    };
     return dig_yaml_read(path, &schema, take, config, error);
 }
 

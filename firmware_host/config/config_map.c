@@ -16,6 +16,7 @@
 // default stands below.
 struct map_text {
     struct dig_signal_map   map;
+    const struct dig_dbc   *dbc;
     unsigned                function;
     struct dig_signal_text  alive;
     struct dig_message_text messages[DIG_GROUPS_MAX];
@@ -23,7 +24,6 @@ struct map_text {
     struct dig_signal_text  signals[DIG_SIGNALS];
     size_t                  signals_count;
 };
-static const struct map_text defaults = { .map.stuck_s = 0.5 };
 
 #define NAME(key, flag, type, member) FIELD(TEXT, key, type, member, flag, .least = 1)
 #define MS(key, type, member, most)                                                                \
@@ -123,10 +123,6 @@ static const struct dig_yaml_field map_fields[] = {
     LIST("signals", REQUIRED, map_text, signals, signals_count, &signal_value, 1),
     END,
 };
-
-static const struct dig_yaml_file schema = { .of       = map_fields,
-                                             .size     = sizeof(struct map_text),
-                                             .defaults = &defaults };
 
 // Where a value lies on the map's bus.
 static void find_place(const struct dig_config_map_work *const work, const char *const at,
@@ -303,23 +299,21 @@ static void read_map(const struct dig_config_map_work *const work,
     }
 }
 
-static void take(const char *const path, void *const loaded, void *const into,
-                 struct dig_conditions *const c)
+static void take(const char *const path, void *const loaded, struct dig_conditions *const c)
 {
-    const struct dig_config_map_work *const asked = into;
-    struct map_text *const                  text  = loaded;
-    const struct dig_config_map_work        work  = { asked->dbc, &text->map, c };
+    struct map_text *const           text = loaded;
+    const struct dig_config_map_work work = { text->dbc, &text->map, c };
     (void)path;
     read_map(&work, text);
-    if (c->status == DIG_OK) {
-        *asked->map = text->map;
-    }
 }
 
 enum dig_status dig_signal_map_read(const char *const path, const struct dig_dbc *const dbc,
                                     struct dig_signal_map *const map, struct dig_error *const error)
 {
     assert(map != NULL);
-    struct dig_config_map_work asked = { .dbc = dbc, .map = map };
-    return dig_yaml_read(path, &schema, take, &asked, error);
+    const struct map_text      start  = { .map.stuck_s = 0.5, .dbc = dbc };
+    const struct dig_yaml_file schema = {
+        .of = map_fields, .size = sizeof start, .kept = sizeof start.map, .defaults = &start
+    };
+    return dig_yaml_read(path, &schema, take, map, error);
 }
