@@ -31,13 +31,9 @@ enum dig_status dig_contacts_grow(struct dig_contacts *const list, const size_t 
     };
     bool ok = more.i != NULL && more.j != NULL && more.slot != NULL;
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        if (list->single) {
-            more.single_history[m] = grow(list->single_history[m], list->n, room, sizeof(float));
-            ok                     = ok && more.single_history[m] != NULL;
-        } else {
-            more.history[m] = grow(list->history[m], list->n, room, sizeof(double));
-            ok              = ok && more.history[m] != NULL;
-        }
+        more.any_history[m] = grow(list->any_history[m], list->n, room,
+                                   list->single ? sizeof(float) : sizeof(double));
+        ok                  = ok && more.any_history[m] != NULL;
     }
     if (!ok) {
         dig_contacts_finish(&more);
@@ -105,8 +101,7 @@ void dig_contacts_finish(struct dig_contacts *const list)
     free(list->slot);
     free(list->slab_first);
     for (int m = 0; m < DIG_HISTORY_VALUES; m++) {
-        free(list->history[m]);
-        free(list->single_history[m]);
+        free(list->any_history[m]);
     }
     *list = (struct dig_contacts){ 0 };
 }

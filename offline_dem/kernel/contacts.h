@@ -26,11 +26,13 @@ struct dig_contacts {
     // only slab.
     uint32_t *slab_first; // [slabs + 1]
     size_t    slabs;
-    // sx sy sz mx my mz: in single precision in single_history, else in history. The other is
-    // empty.
-    bool    single; // set while the list is empty
-    double *history[DIG_HISTORY_VALUES];
-    float  *single_history[DIG_HISTORY_VALUES];
+    // sx sy sz mx my mz: in single precision in single_history, else in history.
+    bool single; // set while the list is empty
+    union {
+        void   *any_history[DIG_HISTORY_VALUES];
+        double *history[DIG_HISTORY_VALUES];
+        float  *single_history[DIG_HISTORY_VALUES];
+    };
 };
 
 static inline struct dig_contact_history dig_contacts_history(const struct dig_contacts *const list,

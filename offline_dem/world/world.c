@@ -117,44 +117,36 @@ static void advance(struct dig_world *const w, const size_t slab)
                            (const double(*)[4])w->reference_m, slab, &w->grains);
 }
 
+static void add_loads(void *const context, const size_t first, const size_t end)
+{
+    for (size_t slab = first; slab < end; slab++) {
+        add_contact_loads(context, slab);
+    }
+}
+
+static void advance_slabs(void *const context, const size_t first, const size_t end)
+{
+    for (size_t slab = first; slab < end; slab++) {
+        advance(context, slab);
+    }
+}
+
 // A slab is advanced as soon as its contacts and those beside it are done, while it is still in the
 // cache. The first and the last slab of a member wait for those of other members.
 static void add_loads_and_advance(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w = context;
     for (size_t slab = first; slab < end; slab++) {
-        add_contact_loads(w, slab);
+        add_contact_loads(context, slab);
         if (slab > first + 1) {
-            advance(w, slab - 1);
+            advance(context, slab - 1);
         }
     }
 }
 
 static void advance_ends(void *const context, const size_t first, const size_t end)
 {
-    struct dig_world *const w = context;
-    if (first < end) {
-        advance(w, first);
-    }
-    if (first + 1 < end) {
-        advance(w, end - 1);
-    }
-}
-
-static void add_all_loads(void *const context, const size_t first, const size_t end)
-{
-    struct dig_world *const w = context;
-    for (size_t slab = first; slab < end; slab++) {
-        add_contact_loads(w, slab);
-    }
-}
-
-static void advance_all(void *const context, const size_t first, const size_t end)
-{
-    struct dig_world *const w = context;
-    for (size_t slab = first; slab < end; slab++) {
-        advance(w, slab);
-    }
+    advance_slabs(context, first, first < end ? first + 1 : first);
+    advance_slabs(context, first + 1 < end ? end - 1 : end, end);
 }
 
 enum dig_status dig_world_step(struct dig_world *const w)
@@ -168,9 +160,9 @@ enum dig_status dig_world_step(struct dig_world *const w)
     }
     const size_t slabs = w->grains.slabs.count;
     if (w->bodies != NULL) {
-        dig_crew_each(w->crew, slabs, add_all_loads, w);
+        dig_crew_each(w->crew, slabs, add_loads, w);
         dig_bodies_apply_loads(w);
-        dig_crew_each(w->crew, slabs, advance_all, w);
+        dig_crew_each(w->crew, slabs, advance_slabs, w);
     } else {
         dig_crew_each(w->crew, slabs, add_loads_and_advance, w);
         dig_crew_each(w->crew, slabs, advance_ends, w);
