@@ -19,7 +19,7 @@ struct dig_match {
     size_t   digs;      // pooled
     int      nearest;   // entry of the table
     double   nearest_distance;
-    int weighted; // entry nearest by the noise-weighted distance (estimator/match/weighted.h); -1
+    int weighted; // entry nearest by the noise-weighted distance (estimator/match/weighted.c); -1
     double            weighted_distance; // 1 is expected of digs of its gravel; NaN: not computed
     struct dig_gravel gravel; // between the grid points: of the smallest distance; where forces
                               // were measured, the most probable

@@ -4,7 +4,6 @@
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/nearest.h"
 #include "estimator/match/pool.h"
-#include "estimator/match/weighted.h"
 
 #include <assert.h>
 #include <math.h>
@@ -171,15 +170,4 @@ enum dig_status dig_match_nearest(const struct dig_curve_set *const set, const s
         .outside_floors    = outside_floors,
     };
     return DIG_OK;
-}
-
-void dig_match_find_weighted(const struct dig_curve_set *const set, const size_t digs,
-                             const struct dig_observation dig[], struct dig_match *const match)
-{
-    assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
-    struct dig_pool_sums sums;
-    dig_pool_sum(digs, dig, &sums);
-    const struct dig_weighted best = dig_weighted_find(set, &sums, (size_t)match->nearest);
-    match->weighted                = best.entry;
-    match->weighted_distance       = best.entry >= 0 ? best.distance : (double)NAN;
 }

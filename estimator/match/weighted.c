@@ -1,7 +1,17 @@
-#include "estimator/match/weighted.h"
+// The entry nearest to digs by the noise-weighted (Mahalanobis) distance over every channel
+// measured, with the covariance of the packings along the dig. The paper's Euclidean norm of the
+// moment is in match.h.
+//
+//   q = (x - t)' D^-1 (x - t)      x, t, D as in gaussian.h
+//
+// with one D for all entries, that of the entry nearest by the Euclidean norm: with its own D each,
+// an entry of large variance would be near to every dig. Trajectories are independent: their q add.
+
+#include "estimator/match/match.h"
 
 #include "core/outline.h"
 #include "estimator/match/gaussian.h"
+#include "estimator/match/pool.h"
 
 #include <assert.h>
 #include <math.h>
@@ -104,16 +114,22 @@ static void try_entry(struct search *const s, const size_t entry)
     }
 }
 
-struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
-                                      const struct dig_pool_sums *const sums, const size_t nearest)
+void dig_match_find_weighted(const struct dig_curve_set *const set, const size_t digs,
+                             const struct dig_observation dig[], struct dig_match *const match)
 {
-    assert(set != NULL && sums != NULL && nearest < set->entries);
-    struct search s       = { .set = set, .groups = sums->groups };
-    double        numbers = 0.0;
-    for (size_t g = 0; g < sums->groups; g++) {
-        dig_gaussian_make(set, &sums->group[g], &s.group[g].gaussian);
+    assert(set != NULL && digs > 0 && dig != NULL && match != NULL && match->nearest >= 0);
+    assert((size_t)match->nearest < set->entries);
+    const size_t         nearest = (size_t)match->nearest;
+    double               numbers = 0.0;
+    struct dig_pool_sums sums;
+    dig_pool_sum(digs, dig, &sums);
+    struct search s          = { .set = set, .groups = sums.groups };
+    match->weighted          = -1;
+    match->weighted_distance = (double)NAN;
+    for (size_t g = 0; g < sums.groups; g++) {
+        dig_gaussian_make(set, &sums.group[g], &s.group[g].gaussian);
         if (s.group[g].gaussian.numbers == 0) {
-            return (struct dig_weighted){ .entry = -1, .distance = INFINITY };
+            return;
         }
         whiten(set, nearest, &s.group[g]);
         numbers += (double)s.group[g].gaussian.numbers;
@@ -126,5 +142,6 @@ struct dig_weighted dig_weighted_find(const struct dig_curve_set *const set,
     for (size_t e = 0; e < set->entries; e++) {
         try_entry(&s, e);
     }
-    return (struct dig_weighted){ .entry = (int)s.entry, .distance = sqrt(s.least / numbers) };
+    match->weighted          = (int)s.entry;
+    match->weighted_distance = sqrt(s.least / numbers);
 }

@@ -122,10 +122,8 @@ void dig_bodies_release_rocks(struct dig_bodies *const bodies, struct dig_ode_sc
         if (!rock->movable) {
             continue;
         }
-        const struct dig_law law =
-            dig_law_wall(material, dig_rock_least_half_m(&rock->surface), rock->mass_kg);
         bodies->rock_law[i] =
-            (struct dig_rock_contact_law){ law.normal_Npm, law.damping_Nspm, law.friction };
+            dig_law_wall(material, dig_rock_least_half_m(&rock->surface), rock->mass_kg);
         bodies->ode = ode;
     }
     if (bodies->ode != NULL) {

@@ -15,12 +15,12 @@
 #include <stdint.h>
 
 struct dig_bodies {
-    struct dig_clump_shape      shape;
-    size_t                      clumps;
-    struct dig_clump_body      *clump; // [clumps]
-    struct dig_obstacles        obstacles;
-    struct dig_ode_scene       *ode; // moves the rocks; NULL: all are fixed
-    struct dig_rock_contact_law rock_law[DIG_OBSTACLES_MAX];
+    struct dig_clump_shape shape;
+    size_t                 clumps;
+    struct dig_clump_body *clump; // [clumps]
+    struct dig_obstacles   obstacles;
+    struct dig_ode_scene  *ode; // moves the rocks; NULL: all are fixed
+    struct dig_law         rock_law[DIG_OBSTACLES_MAX];
 };
 
 /// Bodies of a bed whose grain i has index i in the world, each clump falling at fall_mps;

@@ -10,11 +10,11 @@
 
 // One step: its contacts, and their reaction on the bucket.
 struct rock_step {
-    struct dig_ode_scene              *ode;
-    const struct dig_rock_contact_law *law;
-    double                             dt_s;
-    size_t                             joints;
-    dJointFeedback                     feedback[DIG_OBSTACLES_MAX * CONTACTS_MAX];
+    struct dig_ode_scene *ode;
+    const struct dig_law *law;
+    double                dt_s;
+    size_t                joints;
+    dJointFeedback        feedback[DIG_OBSTACLES_MAX * CONTACTS_MAX];
 };
 
 static void remove_all(struct dig_ode_scene *const ode)
@@ -83,14 +83,14 @@ static size_t rock_of(const struct dig_ode_scene *const ode, dGeomID geom)
 static dJointID add_joint(struct rock_step *const m, const dContactGeom *const at,
                           const size_t rock, dBodyID a, dBodyID b)
 {
-    const struct dig_rock_contact_law *const t        = &m->law[rock];
-    const double                             softness = m->dt_s * t->normal_Npm + t->damping_Nspm;
-    dContact                                 contact  = { .geom = *at };
-    contact.surface.mode     = dContactSoftERP | dContactSoftCFM | dContactApprox1;
-    contact.surface.mu       = t->friction;
-    contact.surface.soft_erp = m->dt_s * t->normal_Npm / softness;
-    contact.surface.soft_cfm = 1.0 / softness;
-    dJointID joint           = dJointCreateContact(m->ode->world, m->ode->contact_joints, &contact);
+    const struct dig_law *const t        = &m->law[rock];
+    const double                softness = m->dt_s * t->normal_Npm + t->damping_Nspm;
+    dContact                    contact  = { .geom = *at };
+    contact.surface.mode                 = dContactSoftERP | dContactSoftCFM | dContactApprox1;
+    contact.surface.mu                   = t->friction;
+    contact.surface.soft_erp             = m->dt_s * t->normal_Npm / softness;
+    contact.surface.soft_cfm             = 1.0 / softness;
+    dJointID joint = dJointCreateContact(m->ode->world, m->ode->contact_joints, &contact);
     dJointAttach(joint, a, b);
     return joint;
 }
@@ -180,8 +180,8 @@ static void read_back(const struct dig_ode_scene *const ode, struct dig_rock roc
 }
 
 void dig_ode_rocks_step(struct dig_ode_scene *const ode, const struct dig_tool *const tool,
-                        const struct dig_rock_contact_law law[], const double dt_s,
-                        struct dig_rock rock[], struct dig_wrench *const on_tool)
+                        const struct dig_law law[], const double dt_s, struct dig_rock rock[],
+                        struct dig_wrench *const on_tool)
 {
     struct rock_step m = { .ode = ode, .law = law, .dt_s = dt_s };
     dSpaceCollide(ode->rocks, &m, collide);

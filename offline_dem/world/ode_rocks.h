@@ -10,21 +10,17 @@
 
 #include <ode/ode.h>
 
-/// Contact of a rock with rigid surfaces.
-struct dig_rock_contact_law {
-    double normal_Npm, damping_Nspm, friction;
-};
-
 /// A rock's geometry in a space, at no pose yet.
 dGeomID dig_ode_rocks_shape(dSpaceID space, const struct dig_rock_surface *rock);
 
 /// Replaces the scene's rocks by these, at their poses.
 void dig_ode_rocks_set(struct dig_ode_scene *ode, size_t rocks, const struct dig_rock rock[]);
 
-/// One step of every movable rock under the loads rock[].load; their bodies are read back.
+/// One step of every movable rock under the loads rock[].load, touching rigid surfaces by law[];
+/// their bodies are read back.
 /// tool NULL: no bucket. Velocities stand half a step behind positions, as the grains'.
 void dig_ode_rocks_step(struct dig_ode_scene *ode, const struct dig_tool *tool,
-                        const struct dig_rock_contact_law law[], double dt_s,
-                        struct dig_rock rock[], struct dig_wrench *on_tool);
+                        const struct dig_law law[], double dt_s, struct dig_rock rock[],
+                        struct dig_wrench *on_tool);
 
 #endif // DIG_OFFLINE_DEM_WORLD_ODE_ROCKS_H

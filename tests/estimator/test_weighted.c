@@ -1,10 +1,9 @@
 // Tests for estimator/match/weighted.c: the formula written out, and what it finds that the
 // Euclidean norm of the moment does not
 
-#include "estimator/match/weighted.h"
+#include "estimator/match/match.h"
 
 #include "core/outline.h"
-#include "estimator/match/match.h"
 #include "tests/estimator/random_dig.h"
 #include "tests/estimator/weighted_by_hand.h"
 #include "tests/testlib.h"
@@ -60,18 +59,14 @@ TEST(it_is_the_formula_written_out)
         }
         struct dig_pool_sums sums;
         dig_pool_sum(digs, dig, &sums);
-        const size_t              nearest  = 12 + (size_t)trial;
-        const struct dig_weighted expected = by_hand(set, &sums, 0.15, nearest);
-        const struct dig_weighted is       = dig_weighted_find(set, &sums, nearest);
-        assert_int_equal(is.entry, expected.entry);
-        assert_close(is.distance, expected.distance, 1e-6 * expected.distance);
-
-        struct dig_match match = { .valid = true, .nearest = (int)nearest };
+        const size_t                  nearest  = 12 + (size_t)trial;
+        const struct weighted_by_hand expected = by_hand(set, &sums, 0.15, nearest);
+        struct dig_match              match    = { .valid = true, .nearest = (int)nearest };
         dig_match_find_weighted(set, digs, dig, &match);
-        assert_int_equal(match.weighted, is.entry);
-        assert_close(match.weighted_distance, is.distance, 0.0);
+        assert_int_equal(match.weighted, expected.entry);
+        assert_close(match.weighted_distance, expected.distance, 1e-6 * expected.distance);
         assert_int_equal(match.nearest, nearest);
-        found += is.entry >= 0 ? 1 : 0;
+        found += match.weighted >= 0 ? 1 : 0;
     }
     assert_int_equal(found, 24);
     free(set->covariance);

@@ -3,7 +3,7 @@
 #ifndef DIG_TESTS_ESTIMATOR_WEIGHTED_BY_HAND_H
 #define DIG_TESTS_ESTIMATOR_WEIGHTED_BY_HAND_H
 
-#include "estimator/match/weighted.h"
+#include "estimator/match/pool.h"
 
 #include "estimator/match/entry_scatter.h"
 #include "tests/made_table.h"
@@ -221,14 +221,19 @@ static inline double eliminate(struct numbers *const a)
     return q;
 }
 
-static inline struct dig_weighted by_hand(const struct dig_curve_set *const set,
-                                          const struct dig_pool_sums *const sums,
-                                          const double relative_sd, const size_t nearest)
+struct weighted_by_hand {
+    int    entry; // -1: none
+    double distance;
+};
+
+static inline struct weighted_by_hand by_hand(const struct dig_curve_set *const set,
+                                              const struct dig_pool_sums *const sums,
+                                              const double relative_sd, const size_t nearest)
 {
-    struct numbers      all;
-    struct dig_weighted best  = { .entry = -1 };
-    double              least = INFINITY;
-    struct relative     relative[DIG_TRAJECTORY_MAX];
+    struct numbers          all;
+    struct weighted_by_hand best  = { .entry = -1 };
+    double                  least = INFINITY;
+    struct relative         relative[DIG_TRAJECTORY_MAX];
     for (size_t g = 0; g < sums->groups; g++) {
         relate(set, sums->group[g].trajectory, relative_sd, &relative[g]);
     }
@@ -242,7 +247,7 @@ static inline struct dig_weighted by_hand(const struct dig_curve_set *const set,
         const double q = eliminate(&all);
         if (dug && q < least) {
             least = q;
-            best  = (struct dig_weighted){ (int)e, sqrt(q / all.count) };
+            best  = (struct weighted_by_hand){ (int)e, sqrt(q / all.count) };
         }
     }
     return best;
