@@ -355,7 +355,7 @@ enum dig_status dig_ode_bed_take_over(struct dig_world *const w)
         return DIG_EINVAL;
     }
     struct bed *const bed  = calloc(1, sizeof *bed);
-    dBodyID *const    body = calloc(w->grains.n + 1, sizeof *body);
+    dBodyID *const    body = calloc(w->grains.n + 1, sizeof(dBodyID));
     if (bed == NULL || body == NULL || !dInitODE2(0)) {
         free(bed);
         free(body);

@@ -55,11 +55,10 @@ static void *place(struct memory *const m, const void *const from, const size_t 
 // The view's arrays; the state of grains and contacts where it is not carried over.
 static struct memory copy_of(const struct dig_device_view *const v, const bool carried)
 {
-    struct memory m = { .view = *v };
+    struct memory m        = { .view = *v };
+    const bool    given[3] = { [DIG_DEVICE_GIVEN] = true, [DIG_DEVICE_KEPT] = !carried };
 #define ARRAY(name, count, how)                                                                    \
-    m.view.name = place(                                                                           \
-        &m, (how) == DIG_DEVICE_GIVEN || ((how) == DIG_DEVICE_KEPT && !carried) ? v->name : NULL,  \
-        (count) * sizeof *v->name);
+    m.view.name = place(&m, given[how] ? v->name : NULL, (count) * sizeof *v->name);
     DIG_DEVICE_ARRAYS(ARRAY, v)
 #undef ARRAY
     if (m.view.on_tool != NULL) {
