@@ -36,7 +36,7 @@ size does not halve a probability|closed_loop/verdict/trace_work.h|s/UNCONFIRMED
 every correction is made|closed_loop/verdict/trace.c|s/most_chance_of_worse = 0.2/most_chance_of_worse = 1.0/|88
 every trajectory is corrected|closed_loop/search/unlisted.c|s/!(gain_of(batch, left, by\[g\], g) > 0.0)/false/|35
 what has no name is corrected whole|closed_loop/search/unlisted.c|s/by\[g\] = credible(batch, fitted, g)/by[g] = 1.0/|20
-repeats count as beds|closed_loop/fit/whitened_digs.c|s/return beds;/return batch->group[group].digs;/|54
+repeats count as beds|closed_loop/fit/batch.c|s/return beds;/return batch->group[group].digs;/|54
 codes agree (.01: 0)|closed_loop/fit/likelihood.c|s/of_codes *= 0.01;/of_codes = 0.0;/|2
 codes differ smoothly alone (.01: 0)|closed_loop/fit/likelihood.c|s/rough = 0.01/rough = 0.0/|1
 what has no name changes slowly alone (.5: 0)|closed_loop/fit/likelihood.c|s/quick = 0.5/quick = 0.0/|3
@@ -53,7 +53,7 @@ a higher floor of scatter (.002: .015)|closed_loop/model/scatter.h|s/SCATTER_FLO
 correlations are as the packings have them (.25: 0)|closed_loop/model/packings.c|s/towards_even *= 0.25/towards_even = 0.0/|45
 left-out packings do not widen scatter|closed_loop/model/scatter.c|s/fmax(held_out.all, 1.0)/1.0/|10
 beds do not scatter as gravels do|closed_loop/model/scatter.c|s/fmax(held_out.as_gravels .*;/0.0;/|110
-the size of scatter is known|closed_loop/fit/whitened_digs.c|s/return isinf(known) ?/return true ?/|10
+the size of scatter is known|closed_loop/fit/batch.c|s/return isinf(known) ?/return true ?/|10
 the surface is exact|closed_loop/model/response_surface.c|s/^    return sum;/    return 0.0;/|15
 no cubic terms|closed_loop/model/response_surface.c|s/MOST_DEGREE = 3/MOST_DEGREE = 2/|20
 cubic terms are free (5: 0)|closed_loop/model/response_surface.c|s/cubic_prior = 5.0/cubic_prior = 0.0/|4

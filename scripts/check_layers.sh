@@ -54,7 +54,7 @@ closed_loop/numeric    | dense levenberg
 closed_loop/recordings measured observe | features lateness reading_noise regressors path_depth
 closed_loop/machine_digs observe_machine recording_faults | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
-closed_loop/fit        | hypothesis posterior steps whitened_digs
+closed_loop/fit        | batch hypothesis posterior steps
 closed_loop/air        | machine_air
 closed_loop/machine    machine_side | machine_fit machine_lines machine_noise
 closed_loop/check      machine_check

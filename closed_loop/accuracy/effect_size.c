@@ -18,14 +18,13 @@ static const double unsure = 0.25;
 
 // The moments that a gravel is to explain, group by group.
 struct moments {
-    const struct dig_whitened_digs *batch;
-    double weight[DIG_TRAJECTORY_MAX][POINTS]; // root of digs times rig time
-    double target_Nm[DIG_TRAJECTORY_MAX][POINTS];
+    const struct dig_batch *batch;
+    double                  weight[DIG_TRAJECTORY_MAX][POINTS]; // root of digs times rig time
+    double                  target_Nm[DIG_TRAJECTORY_MAX][POINTS];
 };
 
-static void weigh(const struct dig_curve_set *const           set,
-                  const struct dig_whitened_digs_group *const group, const double first,
-                  const double last, double weight[POINTS])
+static void weigh(const struct dig_curve_set *const set, const struct dig_group *const group,
+                  const double first, const double last, double weight[POINTS])
 {
     const struct dig_trajectory *const t = &set->trajectory[group->trajectory];
     for (size_t p = 0; p < POINTS; p++) {
@@ -80,17 +79,16 @@ static double least_left(struct moments *const m, const double place[DIG_AXES])
 
 // The means over a group's digs of what each one's moment has, where all of them were measured;
 // returns what the means are uncertain by, in squares.
-static double begin(const struct dig_whitened_digs *const batch,
-                    const struct dig_fitted *const fitted, const double moment_Nm[][POINTS],
-                    struct moments *const m)
+static double begin(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                    const double moment_Nm[][POINTS], struct moments *const m)
 {
     double floor = 0.0;
     *m           = (struct moments){ .batch = batch };
     for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &batch->group[g];
-        double                                      sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
-        double                                      first = 0.0;
-        double                                      last  = 1.0;
+        const struct dig_group *const group = &batch->group[g];
+        double                        sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+        double                        first = 0.0;
+        double                        last  = 1.0;
         for (size_t i = 0; i < batch->digs; i++) {
             const struct dig_measured *const dig = &batch->measured[batch->dig[i].measured];
             if (batch->dig[i].group != g) {
@@ -114,8 +112,8 @@ static double begin(const struct dig_whitened_digs *const batch,
 }
 
 // The size of what is added to the moments of the batch's digs.
-static double size_of(const struct dig_whitened_digs *const batch,
-                      const struct dig_fitted *const fitted, const double added_Nm[][POINTS])
+static double size_of(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                      const double added_Nm[][POINTS])
 {
     struct moments m;
     const double   floor = begin(batch, fitted, added_Nm, &m);
@@ -132,8 +130,8 @@ static double size_of(const struct dig_whitened_digs *const batch,
     return added > 0.0 && floor > 0.0 ? sqrt(least_left(&m, fitted->number) / floor) : 0.0;
 }
 
-double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
-                                  const struct dig_fitted *const        fitted,
+double dig_effect_size_of_machine(const struct dig_batch *const  batch,
+                                  const struct dig_fitted *const fitted,
                                   const double machine[][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS])
 {
     assert(batch != NULL && fitted != NULL && machine != NULL);
@@ -146,8 +144,8 @@ double dig_effect_size_of_machine(const struct dig_whitened_digs *const batch,
     return size_of(batch, fitted, (const double(*)[POINTS])added_Nm);
 }
 
-double dig_effect_size_left(const struct dig_whitened_digs *const batch,
-                            const struct dig_fitted *const        fitted)
+double dig_effect_size_left(const struct dig_batch *const  batch,
+                            const struct dig_fitted *const fitted)
 {
     assert(batch != NULL && fitted != NULL);
     struct moments m;
@@ -180,7 +178,7 @@ static struct dig_fitted leave_out(const struct dig_fitted *const chosen, const 
     return less;
 }
 
-double dig_effect_size_of_soil(const struct dig_whitened_digs *const batch,
+double dig_effect_size_of_soil(const struct dig_batch *const  batch,
                                const struct dig_fitted *const chosen, const size_t e,
                                const double noise[])
 {

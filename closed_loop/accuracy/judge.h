@@ -41,7 +41,7 @@ void dig_judge_sd(const struct dig_response_surface *surface, const struct dig_s
                   double sd[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS]);
 
 /// Of a dig that effects make another than its gravel alone would be: the scatter of digs is
-/// relative to what they are (closed_loop/fit/whitened_digs.h), so sd grows as the sizes of the
+/// relative to what they are (closed_loop/fit/batch.h), so sd grows as the sizes of the
 /// curves do.
 void dig_judge_sd_of_dug(const double plain[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],
                          const double dug[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS],

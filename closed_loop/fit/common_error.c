@@ -90,8 +90,7 @@ static inline void add_shifts(const struct dig_shifts *const shift,
 }
 
 // Moves the group's features, which ascend, to the front.
-static void pick(const struct dig_whitened_digs_group *const group,
-                 double                                      k[DIG_FEATURES][DIG_FEATURES])
+static void pick(const struct dig_group *const group, double k[DIG_FEATURES][DIG_FEATURES])
 {
     for (size_t i = 0; i < group->features && group->features < DIG_FEATURES; i++) {
         for (size_t j = 0; j < group->features; j++) {
@@ -101,7 +100,7 @@ static void pick(const struct dig_whitened_digs_group *const group,
 }
 
 // The lower triangle of W k W', row by row; whiten[i] adds nothing to y before y[i].
-static inline void whiten_both(const struct dig_whitened_digs_group *const group,
+static inline void whiten_both(const struct dig_group *const group,
                                const double k[DIG_FEATURES][DIG_FEATURES], double whitened[])
 {
     const size_t n = group->features;
@@ -124,9 +123,9 @@ static inline void whiten_both(const struct dig_whitened_digs_group *const group
     }
 }
 
-DIG_VECTORS static void fill_covariance(const struct dig_whitened_digs_group *const group,
-                                        const struct dig_common_error *const        error,
-                                        double                                      covariance[])
+DIG_VECTORS static void fill_covariance(const struct dig_group *const        group,
+                                        const struct dig_common_error *const error,
+                                        double                               covariance[])
 {
     double k[DIG_FEATURES][DIG_FEATURES] = { { 0.0 } };
     add_parts(error, k);
@@ -136,13 +135,13 @@ DIG_VECTORS static void fill_covariance(const struct dig_whitened_digs_group *co
 }
 
 // What beds differ by as other gravels do.
-static void add_as_gravels(const struct dig_whitened_digs_group *const group,
+static void add_as_gravels(const struct dig_group *const  group,
                            const struct dig_shifts *const shift, double covariance[])
 {
     const size_t n = group->features;
     for (size_t a = 0; a < DIG_AXES; a++) {
         double y[DIG_FEATURES];
-        dig_whitened_digs_whiten(group, shift->as_gravels[a], y);
+        dig_batch_whiten(group, shift->as_gravels[a], y);
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j <= i; j++) {
                 covariance[i * n + j] += y[i] * y[j];
@@ -151,8 +150,8 @@ static void add_as_gravels(const struct dig_whitened_digs_group *const group,
     }
 }
 
-void dig_common_error_build(const struct dig_whitened_digs_group *const group,
-                            struct dig_common_error *const              error)
+void dig_common_error_build(const struct dig_group *const  group,
+                            struct dig_common_error *const error)
 {
     assert(group != NULL && error != NULL);
     const size_t n     = group->features;
@@ -170,7 +169,7 @@ void dig_common_error_build(const struct dig_whitened_digs_group *const group,
     dig_lower_invert(n, covariance, error->inverse);
 }
 
-double dig_common_error_of_approaches(const struct dig_whitened_digs_group *const group)
+double dig_common_error_of_approaches(const struct dig_group *const group)
 {
     struct dig_common_error only = { .even = group->added_noise };
     for (size_t f = 0; f < DIG_FEATURES; f++) {
@@ -183,7 +182,7 @@ double dig_common_error_of_approaches(const struct dig_whitened_digs_group *cons
     return only.noise;
 }
 
-double dig_common_error_squares(const struct dig_whitened_digs_group *const group,
+double dig_common_error_squares(const struct dig_group *const        group,
                                 const struct dig_common_error *const error, double residual[])
 {
     double sum = 0.0;
@@ -203,7 +202,7 @@ static void add_drawn(const double sigma[DIG_FEATURES], uint64_t *const seed,
     }
 }
 
-void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
+void dig_common_error_draw(const struct dig_group *const        group,
                            const struct dig_common_error *const error, uint64_t *const seed,
                            double y[DIG_FEATURES])
 {
@@ -233,5 +232,5 @@ void dig_common_error_draw(const struct dig_whitened_digs_group *const group,
             add_drawn(error->shift.as_gravels[a], seed, feature);
         }
     }
-    dig_whitened_digs_whiten(group, feature, y);
+    dig_batch_whiten(group, feature, y);
 }

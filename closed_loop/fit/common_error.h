@@ -34,16 +34,15 @@ bool dig_shifts_templated(const struct dig_hypothesis *hypothesis);
 
 /// The shifts of a group's mean dig, each of a trajectory's own. plain: at number; added: what the
 /// effects add there.
-void dig_shifts_fill(const struct dig_whitened_digs *batch, size_t group,
+void dig_shifts_fill(const struct dig_batch *batch, size_t group,
                      const struct dig_hypothesis *hypothesis, const double number[],
                      const struct dig_plain *plain, const double added[DIG_FEATURES],
                      struct dig_shifts *shifts);
 
 /// 1 sigma, beside an effect of the soil, of the error that all trajectories share: of the gravel's
 /// place and of the effects' u. A fit takes it for another gravel, so no residual shows it.
-void dig_shifts_common(const struct dig_whitened_digs *batch,
-                       const struct dig_hypothesis *hypothesis, const double number[],
-                       double sigma[DIG_HYPOTHESIS_NUMBERS]);
+void dig_shifts_common(const struct dig_batch *batch, const struct dig_hypothesis *hypothesis,
+                       const double number[], double sigma[DIG_HYPOTHESIS_NUMBERS]);
 
 #define DIG_COMMON_ERROR_PARTS 4 // all but the third change slowly along the dig
 
@@ -57,20 +56,18 @@ struct dig_common_error {
 };
 
 /// Fills inverse, log_det and noise from even, size and shift. Some microseconds.
-void dig_common_error_build(const struct dig_whitened_digs_group *group,
-                            struct dig_common_error              *error);
+void dig_common_error_build(const struct dig_group *group, struct dig_common_error *error);
 
 /// The part of a group's noise that comes from its digs' other approaches, which were subtracted.
 /// It is of those digs alone. Some microseconds.
-double dig_common_error_of_approaches(const struct dig_whitened_digs_group *group);
+double dig_common_error_of_approaches(const struct dig_group *group);
 
 /// Squares of a residual of the group's mean over the covariance; residual becomes L^-1 residual.
-double dig_common_error_squares(const struct dig_whitened_digs_group *group,
-                                const struct dig_common_error *error, double residual[]);
+double dig_common_error_squares(const struct dig_group *group, const struct dig_common_error *error,
+                                double residual[]);
 
 /// Draws the smooth part, whitened, into y.
-void dig_common_error_draw(const struct dig_whitened_digs_group *group,
-                           const struct dig_common_error *error, uint64_t *seed,
-                           double y[DIG_FEATURES]);
+void dig_common_error_draw(const struct dig_group *group, const struct dig_common_error *error,
+                           uint64_t *seed, double y[DIG_FEATURES]);
 
 #endif // DIG_CLOSED_LOOP_FIT_COMMON_ERROR_H

@@ -34,7 +34,7 @@ size_t dig_hypothesis_free(const struct dig_hypothesis *const hypothesis)
 }
 
 // Without rates, as a machine's, digs show nothing that is late.
-static bool any_rate(const struct dig_whitened_digs *const batch)
+static bool any_rate(const struct dig_batch *const batch)
 {
     bool any = false;
     for (size_t i = 0; i < batch->digs; i++) {
@@ -46,8 +46,7 @@ static bool any_rate(const struct dig_whitened_digs *const batch)
     return any;
 }
 
-bool dig_hypothesis_possible(const struct dig_whitened_digs *const batch,
-                             const enum dig_effect_id              effect)
+bool dig_hypothesis_possible(const struct dig_batch *const batch, const enum dig_effect_id effect)
 {
     if (dig_effect_is_of_machine(effect)) {
         return is_late(effect) && any_rate(batch);
@@ -104,12 +103,12 @@ void dig_forward_add(const struct dig_soil *const soil, const struct dig_plain *
     }
 }
 
-double dig_forward_added(const struct dig_whitened_digs *const batch, const size_t group,
+double dig_forward_added(const struct dig_batch *const batch, const size_t group,
                          const struct dig_plain *const      plain,
                          const struct dig_hypothesis *const hypothesis, const double number[],
                          double added[DIG_FEATURES])
 {
-    const struct dig_measured *const first    = dig_whitened_digs_first(batch, group);
+    const struct dig_measured *const first    = dig_batch_first(batch, group);
     const bool                       differs  = dig_hypothesis_differs(hypothesis);
     double                           variance = 0.0;
     memset(added, 0, DIG_FEATURES * sizeof added[0]);

@@ -4,7 +4,7 @@
 #ifndef DIG_CLOSED_LOOP_FIT_FORWARD_H
 #define DIG_CLOSED_LOOP_FIT_FORWARD_H
 
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/batch.h"
 
 #define DIG_HYPOTHESIS_EFFECTS 3
 #define DIG_HYPOTHESIS_NUMBERS (DIG_AXES + 2 * DIG_HYPOTHESIS_EFFECTS)
@@ -33,7 +33,7 @@ struct dig_plain dig_plain_of(const struct dig_soil *soil, size_t trajectory,
 
 /// True when the digs of a batch can show the effect at all: templates along every trajectory,
 /// passes, paces or an order that differ.
-bool dig_hypothesis_possible(const struct dig_whitened_digs *batch, enum dig_effect_id effect);
+bool dig_hypothesis_possible(const struct dig_batch *batch, enum dig_effect_id effect);
 
 /// How many numbers of its effects are free.
 size_t dig_hypothesis_free(const struct dig_hypothesis *hypothesis);
@@ -50,8 +50,8 @@ void dig_forward_add(const struct dig_soil *soil, const struct dig_plain *plain,
 
 /// What the effects add to the mean dig of a group of the batch, units of the table; returns the
 /// variance of their templates, in variances of one plain dig.
-double dig_forward_added(const struct dig_whitened_digs *batch, size_t group,
-                         const struct dig_plain *plain, const struct dig_hypothesis *hypothesis,
-                         const double number[], double added[DIG_FEATURES]);
+double dig_forward_added(const struct dig_batch *batch, size_t group, const struct dig_plain *plain,
+                         const struct dig_hypothesis *hypothesis, const double number[],
+                         double added[DIG_FEATURES]);
 
 #endif // DIG_CLOSED_LOOP_FIT_FORWARD_H

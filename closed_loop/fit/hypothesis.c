@@ -82,7 +82,7 @@ static bool improve(struct dig_likelihood *const likelihood, struct dig_levenber
     memcpy(to, f->number, sizeof to);
     dig_likelihood_weigh(likelihood, to);
     dig_levenberg_run(l, to, &squares);
-    const double about = likelihood->differs ? 0.0 : dig_whitened_digs_about(likelihood->batch);
+    const double about = likelihood->differs ? 0.0 : dig_batch_about(likelihood->batch);
     const bool   leads = squares + about < f->squares - enough;
     for (int half = 0; half < HALVES && leads && !better; half++) {
         const double way = ldexp(1.0, -half);
@@ -108,7 +108,7 @@ static void fit_from(struct dig_likelihood *const likelihood, struct dig_levenbe
     }
 }
 
-void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
+void dig_hypothesis_fit(const struct dig_batch *const      batch,
                         const struct dig_hypothesis *const hypothesis, const double start[],
                         const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
@@ -147,9 +147,9 @@ void dig_hypothesis_fit(const struct dig_whitened_digs *const batch,
     *fitted = best;
 }
 
-void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
-                                 const struct dig_fitted *const        beside,
-                                 struct dig_fitted *const              fitted)
+void dig_hypothesis_fit_unlisted(const struct dig_batch *const  batch,
+                                 const struct dig_fitted *const beside,
+                                 struct dig_fitted *const       fitted)
 {
     static const double sizes[] = { 0.1, 0.2, 0.4, 0.8 };
     const size_t        n       = sizeof sizes / sizeof sizes[0];
@@ -167,7 +167,7 @@ void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *const batch,
     *fitted = best;
 }
 
-void dig_hypothesis_errors(const struct dig_whitened_digs *const batch,
+void dig_hypothesis_errors(const struct dig_batch *const  batch,
                            const struct dig_fitted *const fitted, struct dig_common_error error[])
 {
     struct dig_likelihood likelihood;
@@ -183,13 +183,13 @@ void dig_fitted_features(const struct dig_soil *const soil, const struct dig_fit
     dig_forward_add(soil, &plain, &fitted->hypothesis, fitted->number, dig, feature, NULL);
 }
 
-void dig_fitted_whitened(const struct dig_whitened_digs *const batch,
-                         const struct dig_fitted *const fitted, const size_t group,
-                         const struct dig_measured *const dig, double y[DIG_FEATURES])
+void dig_fitted_whitened(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                         const size_t group, const struct dig_measured *const dig,
+                         double y[DIG_FEATURES])
 {
     double feature[DIG_FEATURES];
     dig_fitted_features(batch->soil, fitted, dig, feature);
-    dig_whitened_digs_whiten(&batch->group[group], feature, y);
+    dig_batch_whiten(&batch->group[group], feature, y);
 }
 
 void dig_fitted_curve(const struct dig_soil *const soil, const struct dig_fitted *const fitted,

@@ -27,21 +27,20 @@ enum dig_fit_care { DIG_FIT_BARE, DIG_FIT_THOROUGH };
 
 /// Fits the hypothesis from start[DIG_HYPOTHESIS_NUMBERS]; low and high stay unset. It cannot fail.
 /// Some hundred microseconds a start.
-void dig_hypothesis_fit(const struct dig_whitened_digs *batch,
-                        const struct dig_hypothesis *hypothesis, const double start[],
-                        enum dig_fit_care care, struct dig_fitted *fitted);
+void dig_hypothesis_fit(const struct dig_batch *batch, const struct dig_hypothesis *hypothesis,
+                        const double start[], enum dig_fit_care care, struct dig_fitted *fitted);
 
 /// Fits what has no name beside the hypothesis of a fit, of the size that explains most. The choice
 /// of the size costs misfit.
-void dig_hypothesis_fit_unlisted(const struct dig_whitened_digs *batch,
-                                 const struct dig_fitted *beside, struct dig_fitted *fitted);
+void dig_hypothesis_fit_unlisted(const struct dig_batch *batch, const struct dig_fitted *beside,
+                                 struct dig_fitted *fitted);
 
 /// Features of one dig as a fit predicts it, N m and N at rig scale.
 void dig_fitted_features(const struct dig_soil *soil, const struct dig_fitted *fitted,
                          const struct dig_measured *dig, double feature[DIG_FEATURES]);
 
 /// The same, whitened as the group of the batch.
-void dig_fitted_whitened(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
+void dig_fitted_whitened(const struct dig_batch *batch, const struct dig_fitted *fitted,
                          size_t group, const struct dig_measured *dig, double y[DIG_FEATURES]);
 
 /// Its curve over path progress, N m and N at rig scale.
@@ -54,7 +53,7 @@ void dig_hypothesis_bounds(const struct dig_soil *soil, const struct dig_hypothe
                            double low[], double high[]);
 
 /// Covariance of each group's mean at a fit, error[groups].
-void dig_hypothesis_errors(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
+void dig_hypothesis_errors(const struct dig_batch *batch, const struct dig_fitted *fitted,
                            struct dig_common_error error[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_HYPOTHESIS_H

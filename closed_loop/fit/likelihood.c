@@ -29,9 +29,8 @@ static bool is_same(const size_t n, const double a[], const double b[])
 }
 
 // NaN is never the same.
-void dig_likelihood_init(struct dig_likelihood *const          l,
-                         const struct dig_whitened_digs *const batch,
-                         const struct dig_hypothesis *const    hypothesis)
+void dig_likelihood_init(struct dig_likelihood *const l, const struct dig_batch *const batch,
+                         const struct dig_hypothesis *const hypothesis)
 {
     assert(l != NULL && batch != NULL && hypothesis != NULL);
     l->batch      = batch;
@@ -71,12 +70,12 @@ static void model_dig(struct dig_likelihood *const l, const size_t group,
 {
     double feature[DIG_FEATURES];
     dig_forward_add(l->batch->soil, plain_at(l, group, x), l->hypothesis, x, dig, feature, NULL);
-    dig_whitened_digs_whiten(&l->batch->group[group], feature, y);
+    dig_batch_whiten(&l->batch->group[group], feature, y);
 }
 
 static void model_digs(struct dig_likelihood *const l, const size_t group, const double x[])
 {
-    const struct dig_whitened_digs_group *const of = &l->batch->group[group];
+    const struct dig_group *const of = &l->batch->group[group];
     memset(l->mean[group], 0, sizeof l->mean[group]);
     for (size_t i = 0; i < l->batch->digs; i++) {
         if (l->batch->dig[i].group == group) {
@@ -99,7 +98,7 @@ static void model_at(struct dig_likelihood *const l, const double x[])
         if (l->differs) {
             model_digs(l, g, x);
         } else {
-            model_dig(l, g, dig_whitened_digs_first(l->batch, g), x, l->mean[g]);
+            model_dig(l, g, dig_batch_first(l->batch, g), x, l->mean[g]);
         }
     }
 }
@@ -138,7 +137,7 @@ DIG_VECTORS static void take_off_steps(const struct dig_likelihood *const l, dou
 static void residual_of_means(const struct dig_likelihood *const l, double r[])
 {
     for (size_t g = 0; g < l->batch->groups; r += l->batch->group[g].features, g++) {
-        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        const struct dig_group *const group = &l->batch->group[g];
         for (size_t k = 0; k < group->features; k++) {
             r[k] = group->mean[k] - l->mean[g][k];
         }
@@ -154,8 +153,8 @@ void dig_likelihood_residual(void *const context, const double x[], double r[])
     take_off_steps(l, r, r + l->residuals - l->steps);
     size_t n = l->means;
     for (size_t i = 0; l->differs && i < l->batch->digs; i++) {
-        const size_t                                g     = l->batch->dig[i].group;
-        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        const size_t                  g     = l->batch->dig[i].group;
+        const struct dig_group *const group = &l->batch->group[g];
         for (size_t k = 0; k < group->features; k++) {
             r[n++] = l->batch->dig[i].y[k] - group->mean[k] - (l->y[i][k] - l->mean[g][k]);
         }
@@ -167,8 +166,8 @@ void dig_likelihood_residual(void *const context, const double x[], double r[])
 static double size2_of_plain(struct dig_likelihood *const l, const size_t g, const double x[],
                              double *const factor)
 {
-    const struct dig_whitened_digs_group *const group     = &l->batch->group[g];
-    const double *const                         amplitude = plain_at(l, g, x)->amplitude;
+    const struct dig_group *const group     = &l->batch->group[g];
+    const double *const           amplitude = plain_at(l, g, x)->amplitude;
     *factor = dig_scatter_factor(l->batch->scatter, group->trajectory,
                                  dig_soil_strength(l->batch->soil->surface, x, amplitude));
     return pow(amplitude[DIG_CHANNEL_MY_Nm] / group->amplitude[DIG_CHANNEL_MY_Nm], 2.0);
@@ -239,10 +238,10 @@ static void weigh_steps(struct dig_likelihood *const l)
         l->step_lower[k * l->steps + k] = 1.0;
     }
     for (size_t g = 0; g < l->batch->groups && l->steps > 0; g++) {
-        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
+        const struct dig_group *const group = &l->batch->group[g];
         for (size_t k = 0; k < l->steps; k++) {
             double *const of = l->step[k][g];
-            dig_whitened_digs_whiten(group, steps->of[k][group->trajectory], of);
+            dig_batch_whiten(group, steps->of[k][group->trajectory], of);
             (void)dig_common_error_squares(group, &l->error[g], of);
             for (size_t f = 0; f < group->features; f++) {
                 l->by_feature[g][f][k] = of[f];
@@ -263,13 +262,13 @@ void dig_likelihood_weigh(struct dig_likelihood *const l, const double x[])
     memcpy(l->weighed_at, x, l->numbers * sizeof x[0]);
     const double unlisted = l->hypothesis->unlisted;
     for (size_t g = 0; g < l->batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
-        struct dig_common_error *const              error = &l->error[g];
-        double                                      factor;
-        const double                                size2 = size2_of_plain(l, g, x, &factor);
-        const struct dig_plain *const               at    = plain_at(l, g, x);
-        double                                      added[DIG_FEATURES];
-        const double                                unlike = likeness_of_all(l, g, at, x);
+        const struct dig_group *const  group = &l->batch->group[g];
+        struct dig_common_error *const error = &l->error[g];
+        double                         factor;
+        const double                   size2 = size2_of_plain(l, g, x, &factor);
+        const struct dig_plain *const  at    = plain_at(l, g, x);
+        double                         added[DIG_FEATURES];
+        const double                   unlike = likeness_of_all(l, g, at, x);
         const double templates = dig_forward_added(l->batch, g, at, l->hypothesis, x, added);
         error->even            = rough + group->repeats + group->added_noise + size2 * templates +
                       size2 * factor *
@@ -299,5 +298,5 @@ double dig_likelihood_misfit(const struct dig_likelihood *const l, const double 
         *squares += l->differs ? 0.0 : l->batch->group[g].about;
         logs += l->error[g].log_det;
     }
-    return dig_whitened_digs_misfit(l->batch, *squares) + logs;
+    return dig_batch_misfit(l->batch, *squares) + logs;
 }

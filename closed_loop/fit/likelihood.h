@@ -21,12 +21,12 @@
 
 /// The same numbers are asked about again and again: what was worked out of the last ones is kept.
 struct dig_likelihood {
-    const struct dig_whitened_digs *batch;      // not owned
-    const struct dig_hypothesis    *hypothesis; // not owned
-    size_t                          numbers;    // of the hypothesis
-    size_t                          residuals;
-    size_t                          means; // of the residuals, those of the means, which come first
-    bool                            differs; // from dig to dig of a trajectory
+    const struct dig_batch      *batch;      // not owned
+    const struct dig_hypothesis *hypothesis; // not owned
+    size_t                       numbers;    // of the hypothesis
+    size_t                       residuals;
+    size_t                       means;   // of the residuals, those of the means, which come first
+    bool                         differs; // from dig to dig of a trajectory
 
     double           place[DIG_AXES]; // of which plain is
     struct dig_plain plain[DIG_TRAJECTORY_MAX];
@@ -47,7 +47,7 @@ struct dig_likelihood {
     double step_log_det;
 };
 
-void dig_likelihood_init(struct dig_likelihood *l, const struct dig_whitened_digs *batch,
+void dig_likelihood_init(struct dig_likelihood *l, const struct dig_batch *batch,
                          const struct dig_hypothesis *hypothesis);
 
 /// Takes the covariance at the numbers x for all that follows.

@@ -52,9 +52,9 @@ static void fill_added(const struct dig_likelihood *const l, const double x[],
                        double added[DIG_TRAJECTORY_MAX * DIG_FEATURES])
 {
     for (size_t g = 0; g < l->batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &l->batch->group[g];
-        double *const                               of    = added + g * DIG_FEATURES;
-        const struct dig_plain plain = dig_plain_of(l->batch->soil, group->trajectory, x);
+        const struct dig_group *const group = &l->batch->group[g];
+        double *const                 of    = added + g * DIG_FEATURES;
+        const struct dig_plain        plain = dig_plain_of(l->batch->soil, group->trajectory, x);
         (void)dig_forward_added(l->batch, g, &plain, l->hypothesis, x, of);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             of[f] /= group->amplitude[f / DIG_FEATURE_BINS];
@@ -290,7 +290,7 @@ static void set_interval(struct cloud *const c, const size_t j, struct dig_fitte
     fitted->high[j]         = fmax(leans_high ? c->high[j] : taken[last], fitted->number[j]);
 }
 
-void dig_posterior_intervals(const struct dig_whitened_digs *const batch, const uint64_t seed,
+void dig_posterior_intervals(const struct dig_batch *const batch, const uint64_t seed,
                              struct dig_fitted *const fitted, double covariance[])
 {
     assert(batch != NULL && fitted != NULL);

@@ -16,7 +16,7 @@
 /// share of what the effects add; a point that adds more or less makes it another, less likely one.
 /// Writes the covariance of z of the batch's steps, [steps * steps], with what the numbers leave
 /// open, where covariance is not NULL. Some hundredths of a second.
-void dig_posterior_intervals(const struct dig_whitened_digs *batch, uint64_t seed,
+void dig_posterior_intervals(const struct dig_batch *batch, uint64_t seed,
                              struct dig_fitted *fitted, double covariance[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_POSTERIOR_H

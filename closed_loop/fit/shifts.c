@@ -66,10 +66,10 @@ static struct dig_plain beside(const struct dig_soil *const soil, const size_t t
 
 // What the beds of a group differ by as other gravels do, and the surface, a mean of beds, with
 // them; the first shifts are those gravels.
-static void put_as_gravels(const struct dig_whitened_digs *const batch, const size_t group,
+static void put_as_gravels(const struct dig_batch *const batch, const size_t group,
                            const double place[], struct dig_shifts *const shifts)
 {
-    const struct dig_whitened_digs_group *const of = &batch->group[group];
+    const struct dig_group *const of = &batch->group[group];
 
     const double mean =
         sqrt(1.0 / (double)of->digs + of->repeats +
@@ -87,7 +87,7 @@ static void put_as_gravels(const struct dig_whitened_digs *const batch, const si
     }
 }
 
-void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t group,
+void dig_shifts_fill(const struct dig_batch *const batch, const size_t group,
                      const struct dig_hypothesis *const hypothesis, const double number[],
                      const struct dig_plain *const plain, const double added[DIG_FEATURES],
                      struct dig_shifts *const shifts)
@@ -122,7 +122,7 @@ void dig_shifts_fill(const struct dig_whitened_digs *const batch, const size_t g
 }
 
 // What the effects add to the digs over the plain ones, rms of all trajectories.
-static double size_of_effects(const struct dig_whitened_digs *const batch,
+static double size_of_effects(const struct dig_batch *const      batch,
                               const struct dig_hypothesis *const hypothesis, const double number[])
 {
     double more = 0.0;
@@ -141,7 +141,7 @@ static double size_of_effects(const struct dig_whitened_digs *const batch,
     return sqrt(more / all);
 }
 
-void dig_shifts_common(const struct dig_whitened_digs *const batch,
+void dig_shifts_common(const struct dig_batch *const      batch,
                        const struct dig_hypothesis *const hypothesis, const double number[],
                        double sigma[DIG_HYPOTHESIS_NUMBERS])
 {

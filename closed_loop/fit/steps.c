@@ -2,8 +2,8 @@
 
 #include <assert.h>
 
-void dig_steps_add(const struct dig_whitened_digs *const batch, const double z[],
-                   const size_t group, double y[DIG_FEATURES])
+void dig_steps_add(const struct dig_batch *const batch, const double z[], const size_t group,
+                   double y[DIG_FEATURES])
 {
     assert(batch != NULL && z != NULL && group < batch->groups);
     const struct dig_steps *const steps                 = batch->steps;
@@ -17,13 +17,13 @@ void dig_steps_add(const struct dig_whitened_digs *const batch, const double z[]
             feature[f] += z[k] * steps->of[k][batch->group[group].trajectory][f];
         }
     }
-    dig_whitened_digs_whiten(&batch->group[group], feature, added);
+    dig_batch_whiten(&batch->group[group], feature, added);
     for (size_t f = 0; f < batch->group[group].features; f++) {
         y[f] += added[f];
     }
 }
 
-void dig_steps_settle(struct dig_whitened_digs *const batch, const double z[])
+void dig_steps_settle(struct dig_batch *const batch, const double z[])
 {
     assert(batch != NULL && z != NULL);
     for (size_t g = 0; g < batch->groups; g++) {
@@ -37,6 +37,6 @@ void dig_steps_settle(struct dig_whitened_digs *const batch, const double z[])
     }
     if (batch->steps != NULL) {
         batch->steps = NULL;
-        dig_whitened_digs_summarise(batch);
+        dig_batch_summarise(batch);
     }
 }

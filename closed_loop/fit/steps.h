@@ -5,7 +5,7 @@
 #ifndef DIG_CLOSED_LOOP_FIT_STEPS_H
 #define DIG_CLOSED_LOOP_FIT_STEPS_H
 
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/batch.h"
 
 #define DIG_STEPS_MAX 42
 
@@ -16,10 +16,10 @@ struct dig_steps {
 };
 
 /// Adds sum z[k] of[k] to y of a group, whitened. Does nothing without steps.
-void dig_steps_add(const struct dig_whitened_digs *batch, const double z[], size_t group,
+void dig_steps_add(const struct dig_batch *batch, const double z[], size_t group,
                    double y[DIG_FEATURES]);
 
 /// Subtracts sum z[k] of[k] from the batch's digs, which have no steps then.
-void dig_steps_settle(struct dig_whitened_digs *batch, const double z[]);
+void dig_steps_settle(struct dig_batch *batch, const double z[]);
 
 #endif // DIG_CLOSED_LOOP_FIT_STEPS_H

@@ -10,7 +10,7 @@
 /// |y - plain|^2 - |y - weighed|^2, in squares of the scatter of one dig. Above 0 the effects
 /// predict digs to which they were not fitted. A dig without which the effects cannot be fitted
 /// counts 0. Milliseconds a dig.
-double dig_cross_validation_gain(const struct dig_whitened_digs *batch,
-                                 const struct dig_fitted *plain, const struct dig_fitted *chosen);
+double dig_cross_validation_gain(const struct dig_batch *batch, const struct dig_fitted *plain,
+                                 const struct dig_fitted *chosen);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_CROSS_VALIDATION_H

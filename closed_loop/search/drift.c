@@ -22,9 +22,8 @@ struct columns {
 };
 
 // A larger dig than its group's mean one, whose scatter is 1, scatters more.
-static void measure(const struct dig_whitened_digs *const batch,
-                    const struct dig_fitted *const fitted, const size_t wear,
-                    struct columns *const columns)
+static void measure(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                    const size_t wear, struct columns *const columns)
 {
     struct dig_fitted fresh                    = *fitted;
     double            mean[DIG_TRAJECTORY_MAX] = { 0.0 }; // how much larger, of a group
@@ -37,10 +36,10 @@ static void measure(const struct dig_whitened_digs *const batch,
         mean[g] += larger[i] / (double)batch->group[g].digs;
     }
     for (size_t i = 0; i < batch->digs; i++) {
-        const struct dig_whitened_digs_dig *const dig      = &batch->dig[i];
-        const size_t                              features = batch->group[dig->group].features;
-        const double order = (double)batch->measured[dig->measured].order;
-        double       model[DIG_FEATURES];
+        const struct dig_batch_dig *const dig      = &batch->dig[i];
+        const size_t                      features = batch->group[dig->group].features;
+        const double                      order    = (double)batch->measured[dig->measured].order;
+        double                            model[DIG_FEATURES];
         dig_fitted_whitened(batch, &fresh, dig->group, &batch->measured[dig->measured], model);
         const double own       = dig_product(features, model, model);
         const double weight    = sqrt(own) / (larger[i] / mean[dig->group]);
@@ -62,8 +61,7 @@ static void take_off(const size_t digs, const double other[], double column[])
 }
 
 // Leaves of all columns what is not a number of its own for every trajectory.
-static void take_off_groups(const struct dig_whitened_digs *const batch,
-                            struct columns *const                 columns)
+static void take_off_groups(const struct dig_batch *const batch, struct columns *const columns)
 {
     for (size_t g = 0; g < batch->groups; g++) {
         double one[DIG_MEASURED_MAX];
@@ -83,7 +81,7 @@ static double of_no_order(const double n, const double squares)
     return -0.5 * (squares / variance + n * log(variance));
 }
 
-struct dig_drift dig_drift_of(const struct dig_whitened_digs *const batch,
+struct dig_drift dig_drift_of(const struct dig_batch *const  batch,
                               const struct dig_fitted *const fitted, const double spread)
 {
     assert(batch != NULL && fitted != NULL && spread > 0.0);

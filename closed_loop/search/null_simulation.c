@@ -9,19 +9,18 @@
 
 enum { AT_A_TIME = 25 }; // draws after which is asked whether more would change the answer
 
-double dig_null_simulation_left(const struct dig_whitened_digs *const batch,
-                                const struct dig_fitted *const        fitted)
+double dig_null_simulation_left(const struct dig_batch *const  batch,
+                                const struct dig_fitted *const fitted)
 {
     const double squares = dig_hypothesis_differs(&fitted->hypothesis)
                                ? fitted->means
-                               : fitted->squares - dig_whitened_digs_about(batch);
-    return dig_whitened_digs_misfit_of_means(batch, squares);
+                               : fitted->squares - dig_batch_about(batch);
+    return dig_batch_misfit_of_means(batch, squares);
 }
 
 // Fits base with one effect more. What an effect adds need not grow evenly with it, so that a fit
 // may end near none: several magnitudes are started from.
-static void fit_rival(const struct dig_whitened_digs *const batch,
-                      const struct dig_hypothesis *const    base,
+static void fit_rival(const struct dig_batch *const batch, const struct dig_hypothesis *const base,
                       const struct dig_hypothesis *const rival, const struct dig_fitted *const from,
                       const enum dig_fit_care care, struct dig_fitted *const fitted)
 {
@@ -50,7 +49,7 @@ static void fit_rival(const struct dig_whitened_digs *const batch,
     *fitted = best;
 }
 
-void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
+void dig_null_simulation_fit(const struct dig_batch *const      batch,
                              const struct dig_hypothesis *const base, const size_t rivals,
                              const struct dig_hypothesis rival[], const double start[],
                              const enum dig_fit_care care, struct dig_fitted fitted[],
@@ -58,7 +57,7 @@ void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
 {
     assert(rivals <= DIG_RIVALS_MAX);
     dig_hypothesis_fit(batch, base, start, care, &fitted[0]);
-    statistic->about  = dig_whitened_digs_about(batch);
+    statistic->about  = dig_batch_about(batch);
     statistic->misfit = dig_null_simulation_left(batch, &fitted[0]);
     statistic->gain   = 0.0;
     statistic->best   = rivals;
@@ -74,9 +73,9 @@ void dig_null_simulation_fit(const struct dig_whitened_digs *const batch,
 
 // In how many directions digs of a group scatter independently (Satterthwaite: of what the trace
 // is known from).
-static double directions(const struct dig_whitened_digs *const batch, const size_t g)
+static double directions(const struct dig_batch *const batch, const size_t g)
 {
-    const struct dig_whitened_digs_group *const group = &batch->group[g];
+    const struct dig_group *const group = &batch->group[g];
     const double(*const s)[DIG_FEATURES] =
         (const double(*)[DIG_FEATURES])batch->scatter->covariance[group->trajectory];
     double trace   = 0.0;
@@ -92,8 +91,7 @@ static double directions(const struct dig_whitened_digs *const batch, const size
 
 // The size of a group's true scatter over what the table makes of its few packings: the root of
 // n / chi-squared of n, by Wilson and Hilferty.
-static double draw_size(const struct dig_whitened_digs *const batch, const size_t g,
-                        uint64_t *const seed)
+static double draw_size(const struct dig_batch *const batch, const size_t g, uint64_t *const seed)
 {
     static const double least   = 0.05;
     const double        freedom = batch->scatter->freedom[batch->group[g].trajectory];
@@ -105,7 +103,7 @@ static double draw_size(const struct dig_whitened_digs *const batch, const size_
 }
 
 // Adds what lasts of the sensors' noise, if any does.
-static void add_lasting(const struct dig_whitened_digs_group *const group, uint64_t *const seed,
+static void add_lasting(const struct dig_group *const group, uint64_t *const seed,
                         double feature[DIG_FEATURES])
 {
     double lower[DIG_FEATURE_BINS * DIG_FEATURE_BINS];
@@ -123,11 +121,11 @@ static void add_lasting(const struct dig_whitened_digs_group *const group, uint6
 }
 
 // One dig's scatter, whitened: a residual of the table and the sensors', or normal numbers.
-static void draw_scatter(const struct dig_whitened_digs *const batch, const size_t g,
-                         uint64_t *const seed, double y[DIG_FEATURES])
+static void draw_scatter(const struct dig_batch *const batch, const size_t g, uint64_t *const seed,
+                         double y[DIG_FEATURES])
 {
-    const struct dig_whitened_digs_group *const group = &batch->group[g];
-    const size_t                                n = batch->scatter->residuals[group->trajectory];
+    const struct dig_group *const group = &batch->group[g];
+    const size_t                  n     = batch->scatter->residuals[group->trajectory];
     if (n == 0) {
         for (size_t k = 0; k < group->features; k++) {
             y[k] = dig_chance_normal(seed);
@@ -145,13 +143,13 @@ static void draw_scatter(const struct dig_whitened_digs *const batch, const size
                      group->sensor[f] * dig_chance_normal(&of_sensors);
     }
     add_lasting(group, &of_sensors, feature);
-    dig_whitened_digs_whiten(group, feature, y);
+    dig_batch_whiten(group, feature, y);
 }
 
-void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
-                              const struct dig_fitted *const        fitted,
+void dig_null_simulation_digs(const struct dig_batch *const  batch,
+                              const struct dig_fitted *const fitted,
                               const struct dig_common_error error[], uint64_t *const seed,
-                              struct dig_whitened_digs *const drawn)
+                              struct dig_batch *const drawn)
 {
     assert(batch != NULL && fitted != NULL && error != NULL && seed != NULL && drawn != NULL);
     double common[DIG_TRAJECTORY_MAX][DIG_FEATURES];
@@ -180,7 +178,7 @@ void dig_null_simulation_digs(const struct dig_whitened_digs *const batch,
             drawn->dig[i].y[k] = model[k] + common[g][k] + size[g] * own[k];
         }
     }
-    dig_whitened_digs_summarise(drawn);
+    dig_batch_summarise(drawn);
 }
 
 // True when more draws would not change the answer: the fewer they are, the farther from the level
@@ -197,13 +195,13 @@ static bool is_answered(const struct dig_null_question *const   asked,
 }
 
 struct dig_null_simulation
-dig_null_simulation_draw(const struct dig_whitened_digs *const batch,
-                         const struct dig_fitted *const fitted, const size_t rivals,
-                         const struct dig_hypothesis rival[], const size_t draws,
-                         const struct dig_null_question *const asked, uint64_t *const seed)
+dig_null_simulation_draw(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                         const size_t rivals, const struct dig_hypothesis rival[],
+                         const size_t draws, const struct dig_null_question *const asked,
+                         uint64_t *const seed)
 {
     assert(draws > 1 && rivals <= DIG_RIVALS_MAX);
-    struct dig_whitened_digs   drawn = *batch;
+    struct dig_batch           drawn = *batch;
     struct dig_fitted          again[DIG_RIVALS_MAX + 1];
     struct dig_null_simulation made       = { .draws = 0 };
     double                     squares[3] = { 0.0 };

@@ -36,29 +36,26 @@ struct dig_null_question {
 
 /// Fits a batch by base and by base with each rival added, from the numbers given. Writes the
 /// fits: fitted[0] by base, fitted[1 + i] by rival i.
-void dig_null_simulation_fit(const struct dig_whitened_digs *batch,
-                             const struct dig_hypothesis *base, size_t rivals,
-                             const struct dig_hypothesis rival[], const double start[],
-                             enum dig_fit_care care, struct dig_fitted fitted[],
-                             struct dig_statistic *statistic);
+void dig_null_simulation_fit(const struct dig_batch *batch, const struct dig_hypothesis *base,
+                             size_t rivals, const struct dig_hypothesis rival[],
+                             const double start[], enum dig_fit_care care,
+                             struct dig_fitted fitted[], struct dig_statistic *statistic);
 
 /// Draws the digs of one campaign from fitted into drawn, which is a copy of batch. error:
 /// dig_hypothesis_errors() of both, which no draw changes.
-void dig_null_simulation_digs(const struct dig_whitened_digs *batch,
-                              const struct dig_fitted        *fitted,
+void dig_null_simulation_digs(const struct dig_batch *batch, const struct dig_fitted *fitted,
                               const struct dig_common_error error[], uint64_t *seed,
-                              struct dig_whitened_digs *drawn);
+                              struct dig_batch *drawn);
 
 /// Draws from fitted and fits again, draws times. Fewer suffice where the chance is clearly above
 /// or below the level asked about; asked may be NULL.
 struct dig_null_simulation
-dig_null_simulation_draw(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
+dig_null_simulation_draw(const struct dig_batch *batch, const struct dig_fitted *fitted,
                          size_t rivals, const struct dig_hypothesis rival[], size_t draws,
                          const struct dig_null_question *asked, uint64_t *seed);
 
 /// What a fit leaves of the means: a statistic's misfit.
-double dig_null_simulation_left(const struct dig_whitened_digs *batch,
-                                const struct dig_fitted        *fitted);
+double dig_null_simulation_left(const struct dig_batch *batch, const struct dig_fitted *fitted);
 
 /// Chance, 0 … 1, of a statistic this large or larger (index 0 misfit, 1 about, 2 gain).
 double dig_null_simulation_p(const struct dig_null_simulation *null, size_t index, double value);

@@ -44,9 +44,9 @@ struct place {
 };
 
 struct room {
-    const struct dig_whitened_digs *batch;
-    struct hump                     hump[DIG_TRAJECTORY_MAX];
-    struct dig_whitened_digs        without; // the digs less the hump
+    const struct dig_batch *batch;
+    struct hump             hump[DIG_TRAJECTORY_MAX];
+    struct dig_batch        without; // the digs less the hump
 };
 
 static void describe(const struct room *const r, const size_t g, struct hump *const hump)
@@ -100,7 +100,7 @@ static void put_place(const struct room *const r, const double ahead_m, struct p
             shift(&r->hump[g], k, ahead_m, curve);
         }
         dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, p->feature[g]);
-        dig_whitened_digs_whiten(&r->batch->group[g], p->feature[g], p->y[g]);
+        dig_batch_whiten(&r->batch->group[g], p->feature[g], p->y[g]);
         p->squares[g] = dig_product(r->batch->group[g].features, p->y[g], p->y[g]);
     }
 }
@@ -114,15 +114,14 @@ static void take_off(struct room *const r, const struct place *const p, const do
             r->without.dig[i].y[k] = r->batch->dig[i].y[k] - factor[g] * p->y[g][k];
         }
     }
-    dig_whitened_digs_summarise(&r->without);
+    dig_batch_summarise(&r->without);
 }
 
 // What a fit leaves of the mean dig of a group of the batch, or of it without the hump.
 static void rest_of(const struct room *const r, const struct dig_fitted *const fitted,
-                    const struct dig_whitened_digs *const batch, const size_t g,
-                    double rest[DIG_FEATURES])
+                    const struct dig_batch *const batch, const size_t g, double rest[DIG_FEATURES])
 {
-    dig_fitted_whitened(batch, fitted, g, dig_whitened_digs_first(r->batch, g), rest);
+    dig_fitted_whitened(batch, fitted, g, dig_batch_first(r->batch, g), rest);
     for (size_t k = 0; k < batch->group[g].features; k++) {
         rest[k] = batch->group[g].mean[k] - rest[k];
     }
@@ -136,9 +135,9 @@ static void fit_factors(const struct room *const r, const struct place *const p,
     struct dig_common_error error[DIG_TRAJECTORY_MAX];
     dig_hypothesis_errors(r->batch, fitted, error);
     for (size_t g = 0; g < r->batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &r->batch->group[g];
-        double                                      rest[DIG_FEATURES];
-        double                                      hump[DIG_FEATURES];
+        const struct dig_group *const group = &r->batch->group[g];
+        double                        rest[DIG_FEATURES];
+        double                        hump[DIG_FEATURES];
         rest_of(r, fitted, r->batch, g, rest);
         memcpy(hump, p->y[g], sizeof hump);
         (void)dig_common_error_squares(group, &error[g], rest);
@@ -164,9 +163,9 @@ static void judge(const struct room *const r, const struct place *const p,
     rock->squares = 0.0;
     rock->numbers = 1;
     for (size_t g = 0; g < r->batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &r->without.group[g];
-        double                                      rest[DIG_FEATURES];
-        double                                      again[DIG_FEATURES];
+        const struct dig_group *const group = &r->without.group[g];
+        double                        rest[DIG_FEATURES];
+        double                        again[DIG_FEATURES];
         rest_of(r, f, &r->without, g, rest);
         memcpy(again, rest, sizeof again);
         for (size_t i = 0; i < DIG_FEATURES; i++) {
@@ -180,8 +179,7 @@ static void judge(const struct room *const r, const struct place *const p,
         rock->squares += dig_common_error_squares(group, &other[g], again);
         rock->numbers += rock->factor[g] > 0.0 ? 1 : 0;
     }
-    f->misfit +=
-        dig_whitened_digs_misfit(r->batch, f->squares + dig_whitened_digs_about(&r->without));
+    f->misfit += dig_batch_misfit(r->batch, f->squares + dig_batch_about(&r->without));
 }
 
 // Gravel and factors for one place, in turn.
@@ -253,8 +251,8 @@ static void fit_all(struct room *const r, const struct dig_fitted *const plain,
     rock->high_m += buried * tooth_m;
 }
 
-struct dig_rock dig_rock_fit(const struct dig_whitened_digs *const batch,
-                             const struct dig_fitted *const        plain)
+struct dig_rock dig_rock_fit(const struct dig_batch *const  batch,
+                             const struct dig_fitted *const plain)
 {
     assert(batch != NULL && plain != NULL);
     struct dig_rock rock = { .known = false };

@@ -24,6 +24,6 @@ struct dig_rock {
 };
 
 /// Fits it, starting from the plain hypothesis' fit. A tenth of a second.
-struct dig_rock dig_rock_fit(const struct dig_whitened_digs *batch, const struct dig_fitted *plain);
+struct dig_rock dig_rock_fit(const struct dig_batch *batch, const struct dig_fitted *plain);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_ROCK_H

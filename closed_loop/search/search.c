@@ -15,8 +15,8 @@ static const double rarer = 0.01;
 // Evidence is tempered: covariance and templates are known from a few packings only.
 static const double temper = 0.5;
 
-size_t dig_search_rivals(const struct dig_whitened_digs *const batch,
-                         struct dig_hypothesis                 single[DIG_RIVALS_MAX])
+size_t dig_search_rivals(const struct dig_batch *const batch,
+                         struct dig_hypothesis         single[DIG_RIVALS_MAX])
 {
     assert(batch != NULL && single != NULL);
     size_t rivals = 0;
@@ -85,7 +85,7 @@ static void allow_for_scatter(struct dig_search_work *const c,
     if (c->plain_null.mean[1] > 0.0 && !is_told_by_order(c) &&
         dig_null_simulation_p(&c->plain_null, 1, statistic->about) < c->false_alarm) {
         c->s->spread = sqrt(statistic->about / c->plain_null.mean[1]);
-        dig_whitened_digs_spread(c->batch, c->s->spread);
+        dig_batch_spread(c->batch, c->s->spread);
         fit_all(c, statistic);
     }
 }
@@ -100,9 +100,9 @@ static double chance_of_either(const double p)
 // fitted to costs as much as thirty that none are.
 static void decide_whether(struct dig_search_work *const c)
 {
-    const struct dig_whitened_digs raw  = *c->batch;
-    uint64_t                       seed = c->seed;
-    struct dig_statistic           statistic;
+    const struct dig_batch raw  = *c->batch;
+    uint64_t               seed = c->seed;
+    struct dig_statistic   statistic;
     fit_all(c, &statistic);
     const struct dig_fitted plain = c->s->plain;
     c->plain_null = dig_null_simulation_draw(&raw, &plain, 0, NULL, c->draws, NULL, &c->seed);
@@ -124,8 +124,8 @@ static void decide_whether(struct dig_search_work *const c)
 }
 
 // Resamples the digs of each trajectory.
-static void resample(const struct dig_whitened_digs *const batch, uint64_t *const seed,
-                     struct dig_whitened_digs *const drawn)
+static void resample(const struct dig_batch *const batch, uint64_t *const seed,
+                     struct dig_batch *const drawn)
 {
     for (size_t i = 0; i < batch->digs; i++) {
         const size_t g    = batch->dig[i].group;
@@ -137,14 +137,14 @@ static void resample(const struct dig_whitened_digs *const batch, uint64_t *cons
             }
         }
     }
-    dig_whitened_digs_summarise(drawn);
+    dig_batch_summarise(drawn);
 }
 
 // How often each single effect is best when the campaign is drawn from its own digs.
 static void bootstrap(struct dig_search_work *const c, const size_t times)
 {
-    struct dig_fitted        fitted[DIG_RIVALS_MAX + 1];
-    struct dig_whitened_digs drawn = *c->batch;
+    struct dig_fitted fitted[DIG_RIVALS_MAX + 1];
+    struct dig_batch  drawn = *c->batch;
     for (size_t i = 0; i < times; i++) {
         struct dig_statistic statistic;
         resample(c->batch, &c->seed, &drawn);
@@ -206,8 +206,8 @@ static void set_probabilities(struct dig_search_work *const c)
     }
 }
 
-void dig_search_run(struct dig_whitened_digs *const batch, const double false_alarm,
-                    const size_t draws, const uint64_t seed, struct dig_search *const search)
+void dig_search_run(struct dig_batch *const batch, const double false_alarm, const size_t draws,
+                    const uint64_t seed, struct dig_search *const search)
 {
     assert(batch != NULL && search != NULL && draws >= 4);
     memset(search, 0, sizeof *search);

@@ -43,12 +43,12 @@ struct dig_search {
 };
 
 /// Lists the single effects that the digs can tell; how many.
-size_t dig_search_rivals(const struct dig_whitened_digs *batch,
-                         struct dig_hypothesis           single[DIG_RIVALS_MAX]);
+size_t dig_search_rivals(const struct dig_batch *batch,
+                         struct dig_hypothesis   single[DIG_RIVALS_MAX]);
 
 /// Searches. The batch's amplitudes grow by spread when the campaign's digs scatter more than the
 /// table's. Some seconds.
-void dig_search_run(struct dig_whitened_digs *batch, double false_alarm, size_t draws,
-                    uint64_t seed, struct dig_search *search);
+void dig_search_run(struct dig_batch *batch, double false_alarm, size_t draws, uint64_t seed,
+                    struct dig_search *search);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_H

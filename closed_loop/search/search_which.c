@@ -65,7 +65,7 @@ static bool is_believable(const struct dig_search_work *const c, const double ev
 // dig that is unlike the others.
 static bool drifts_otherwise(struct dig_search_work *const c)
 {
-    struct dig_whitened_digs settled = *c->batch;
+    struct dig_batch settled = *c->batch;
     dig_steps_settle(&settled, c->s->chosen.z);
     const struct dig_drift drift    = dig_drift_of(&settled, &c->s->chosen, c->s->spread);
     const bool             bends    = drift.parabola > drift.line + by_a_bend;
@@ -122,8 +122,7 @@ static void give_up(struct dig_search_work *const c)
 // What has no name may be a rock elsewhere: it must lead all that was tried, and its hump must
 // explain half of what is left; another depth gives it another shape. Of the digs as the plain
 // hypothesis has the machine.
-static void look_for_rock(struct dig_search_work *const         c,
-                          const struct dig_whitened_digs *const settled)
+static void look_for_rock(struct dig_search_work *const c, const struct dig_batch *const settled)
 {
     struct dig_rock *const rock = &c->s->rock;
     *rock                       = dig_rock_fit(settled, &c->s->plain);
@@ -134,11 +133,11 @@ static void look_for_rock(struct dig_search_work *const         c,
     memcpy(rock->plain.z, c->s->plain.z, sizeof rock->plain.z);
     dig_hypothesis_fit(settled, &c->s->plain.hypothesis, c->s->plain.number, DIG_FIT_BARE, &plain);
     const double before = dig_null_simulation_left(settled, &plain);
-    const double after  = dig_whitened_digs_misfit_of_means(settled, rock->squares);
+    const double after  = dig_batch_misfit_of_means(settled, rock->squares);
     rock->log_evidence  = dig_search_evidence(c, &rock->plain, rock->numbers) +
                          0.5 * (plain.misfit - c->s->plain.misfit);
-    rock->p_fit = dig_null_simulation_p(
-        &c->plain_null, 0, dig_whitened_digs_misfit_of_means(settled, rock->plain.squares));
+    rock->p_fit = dig_null_simulation_p(&c->plain_null, 0,
+                                        dig_batch_misfit_of_means(settled, rock->plain.squares));
     const double lead =
         rock->log_evidence - fmax(dig_search_best_evidence(c->s), c->s->without_name.log_evidence);
     c->s->is_rock =
@@ -150,7 +149,7 @@ static void look_for_rock(struct dig_search_work *const         c,
 
 void dig_search_which(struct dig_search_work *const c)
 {
-    struct dig_whitened_digs settled = *c->batch;
+    struct dig_batch settled = *c->batch;
     dig_steps_settle(&settled, c->s->plain.z);
     c->s->without_name = dig_unlisted_find(&settled, &c->s->plain);
     if (c->s->rivals == 0) {

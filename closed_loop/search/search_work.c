@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-double dig_search_penalty(const struct dig_whitened_digs *const batch, const size_t numbers)
+double dig_search_penalty(const struct dig_batch *const batch, const size_t numbers)
 {
     double observations = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {

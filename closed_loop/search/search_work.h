@@ -14,7 +14,7 @@
 #define DIG_SEARCH_BY_ORDER 3.0
 
 struct dig_search_work {
-    struct dig_whitened_digs  *batch;
+    struct dig_batch          *batch;
     double                     false_alarm;
     size_t                     draws;
     uint64_t                   seed;
@@ -24,7 +24,7 @@ struct dig_search_work {
 };
 
 /// Log evidence that so many fitted numbers cost.
-double dig_search_penalty(const struct dig_whitened_digs *batch, size_t numbers);
+double dig_search_penalty(const struct dig_batch *batch, size_t numbers);
 
 /// Log evidence of a fit beside that of the plain hypothesis. more: numbers that were fitted beside
 /// the gravel's and those of its effects.
@@ -46,7 +46,7 @@ struct dig_drift {
 /// For a fit with wear; for any other, line is INFINITY. spread: by which the batch was widened. It
 /// is undone: a dig that is unlike the others widened the batch, and must not hide by that.
 /// Microseconds.
-struct dig_drift dig_drift_of(const struct dig_whitened_digs *batch,
-                              const struct dig_fitted *fitted, double spread);
+struct dig_drift dig_drift_of(const struct dig_batch *batch, const struct dig_fitted *fitted,
+                              double spread);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_SEARCH_WORK_H

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-struct dig_unlisted dig_unlisted_find(const struct dig_whitened_digs *const batch,
-                                      const struct dig_fitted *const        plain)
+struct dig_unlisted dig_unlisted_find(const struct dig_batch *const  batch,
+                                      const struct dig_fitted *const plain)
 {
     assert(batch != NULL && plain != NULL);
     const struct dig_regressed means = dig_regress(batch, plain, false);
@@ -28,8 +28,8 @@ struct left {
     double mean[DIG_TRAJECTORY_MAX][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 };
 
-static void fill_left(const struct dig_whitened_digs *const batch,
-                      const struct dig_fitted *const fitted, struct left *const left)
+static void fill_left(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                      struct left *const left)
 {
     memset(left->mean, 0, sizeof left->mean);
     for (size_t i = 0; i < batch->digs; i++) {
@@ -47,13 +47,13 @@ static void fill_left(const struct dig_whitened_digs *const batch,
 }
 
 // How much of a group's mean residual is more than its noise: 0 … 1.
-static double credible(const struct dig_whitened_digs *const batch,
-                       const struct dig_fitted *const fitted, const size_t g)
+static double credible(const struct dig_batch *const batch, const struct dig_fitted *const fitted,
+                       const size_t g)
 {
-    const struct dig_whitened_digs_group *const group = &batch->group[g];
-    double                                      model[DIG_FEATURES];
-    double                                      squares = 0.0;
-    dig_fitted_whitened(batch, fitted, g, dig_whitened_digs_first(batch, g), model);
+    const struct dig_group *const group = &batch->group[g];
+    double                        model[DIG_FEATURES];
+    double                        squares = 0.0;
+    dig_fitted_whitened(batch, fitted, g, dig_batch_first(batch, g), model);
     for (size_t k = 0; k < group->features; k++) {
         squares += pow(group->mean[k] - model[k], 2.0);
     }
@@ -64,7 +64,7 @@ static double credible(const struct dig_whitened_digs *const batch,
 
 // What is gained, in squares of the moment, when each dig of a group is predicted from so much of
 // the others' residuals.
-static double gain_of(const struct dig_whitened_digs *const batch, const struct left *const left,
+static double gain_of(const struct dig_batch *const batch, const struct left *const left,
                       const double by, const size_t g)
 {
     const double n    = (double)batch->group[g].digs;
@@ -82,8 +82,8 @@ static double gain_of(const struct dig_whitened_digs *const batch, const struct 
 // Leaves a trajectory's mean residual where it is not worth taking off. Digs that differ from each
 // other rather than from the table are made worse by it; of a dig alone the other trajectories
 // tell.
-static void choose_groups(const struct dig_whitened_digs *const batch,
-                          const struct left *const left, double by[DIG_TRAJECTORY_MAX])
+static void choose_groups(const struct dig_batch *const batch, const struct left *const left,
+                          double by[DIG_TRAJECTORY_MAX])
 {
     bool all = true;
     for (size_t g = 0; g < batch->groups; g++) {
@@ -97,9 +97,9 @@ static void choose_groups(const struct dig_whitened_digs *const batch,
     }
 }
 
-void dig_unlisted_correct(const struct dig_whitened_digs *const batch,
-                          const struct dig_fitted *const        fitted,
-                          struct dig_model_unlisted *const      share)
+void dig_unlisted_correct(const struct dig_batch *const    batch,
+                          const struct dig_fitted *const   fitted,
+                          struct dig_model_unlisted *const share)
 {
     struct left left;
     double      by[DIG_TRAJECTORY_MAX];
@@ -110,7 +110,7 @@ void dig_unlisted_correct(const struct dig_whitened_digs *const batch,
     }
     choose_groups(batch, &left, by);
     for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_measured *const first = dig_whitened_digs_first(batch, g);
+        const struct dig_measured *const first = dig_batch_first(batch, g);
         double                           curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
         dig_fitted_curve(batch->soil, fitted, first, curve);
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {

@@ -17,12 +17,12 @@ struct dig_unlisted {
 };
 
 /// Regresses what a fitted plain hypothesis leaves.
-struct dig_unlisted dig_unlisted_find(const struct dig_whitened_digs *batch,
-                                      const struct dig_fitted        *plain);
+struct dig_unlisted dig_unlisted_find(const struct dig_batch  *batch,
+                                      const struct dig_fitted *plain);
 
 /// What to add to the fitted curves, as shares of the rms of the fitted plain curve of each
 /// channel. Trajectories without digs in the batch get none. *share is the caller's.
-void dig_unlisted_correct(const struct dig_whitened_digs *batch, const struct dig_fitted *fitted,
+void dig_unlisted_correct(const struct dig_batch *batch, const struct dig_fitted *fitted,
                           struct dig_model_unlisted *share);
 
 // Of the residual over each dig's amplitude on functions of its state and of how the machine stood,
@@ -62,7 +62,7 @@ struct dig_regressed {
 /// functions, at the paces they were dug with; on pitch where all digs have it. With more functions
 /// to choose from each must bring more evidence, by the log of their number over that of those of
 /// the trajectory: chance finds a function no more often.
-struct dig_regressed dig_regress(const struct dig_whitened_digs *batch,
-                                 const struct dig_fitted *plain, bool each);
+struct dig_regressed dig_regress(const struct dig_batch *batch, const struct dig_fitted *plain,
+                                 bool each);
 
 #endif // DIG_CLOSED_LOOP_SEARCH_UNLISTED_H

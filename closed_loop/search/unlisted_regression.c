@@ -37,26 +37,26 @@ struct states {
     double value[DIG_BASES][DIG_FEATURE_BINS];
 };
 
-static void put_rows(const struct dig_whitened_digs_group *const group,
-                     const double feature[DIG_FEATURES], const double weight, double row[])
+static void put_rows(const struct dig_group *const group, const double feature[DIG_FEATURES],
+                     const double weight, double row[])
 {
     double y[DIG_FEATURES];
-    dig_whitened_digs_whiten(group, feature, y);
+    dig_batch_whiten(group, feature, y);
     for (size_t k = 0; k < group->features; k++) {
         row[k] = weight * y[k];
     }
 }
 
-static void fill_gravel(const struct dig_whitened_digs *const batch,
-                        const struct dig_fitted *const plain, const size_t g, const double weight,
-                        const double model[DIG_FEATURES], struct regression *const r)
+static void fill_gravel(const struct dig_batch *const batch, const struct dig_fitted *const plain,
+                        const size_t g, const double weight, const double model[DIG_FEATURES],
+                        struct regression *const r)
 {
     const double step = 0.02;
     for (size_t a = 0; a < DIG_AXES; a++) {
         struct dig_fitted moved = *plain;
         double            feature[DIG_FEATURES];
         moved.number[a] += batch->soil->surface->set->axis_count[a] > 1 ? step : 0.0;
-        dig_fitted_features(batch->soil, &moved, dig_whitened_digs_first(batch, g), feature);
+        dig_fitted_features(batch->soil, &moved, dig_batch_first(batch, g), feature);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             feature[f] = (feature[f] - model[f]) / step;
         }
@@ -64,9 +64,9 @@ static void fill_gravel(const struct dig_whitened_digs *const batch,
     }
 }
 
-static void fill_functions(const struct dig_whitened_digs_group *const group,
-                           const struct states *const states, const double weight,
-                           const double amplitude[DIG_FORCE_CHANNELS], struct regression *const r)
+static void fill_functions(const struct dig_group *const group, const struct states *const states,
+                           const double weight, const double amplitude[DIG_FORCE_CHANNELS],
+                           struct regression *const r)
 {
     for (size_t f = 0; f < DIG_BASES; f++) {
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
@@ -79,15 +79,14 @@ static void fill_functions(const struct dig_whitened_digs_group *const group,
     }
 }
 
-static void fill_mean(const struct dig_whitened_digs *const batch,
-                      const struct dig_fitted *const plain, const size_t g,
-                      const struct states *const mean, double amplitude[DIG_FORCE_CHANNELS],
-                      struct regression *const r)
+static void fill_mean(const struct dig_batch *const batch, const struct dig_fitted *const plain,
+                      const size_t g, const struct states *const mean,
+                      double amplitude[DIG_FORCE_CHANNELS], struct regression *const r)
 {
-    const struct dig_whitened_digs_group *const group = &batch->group[g];
-    const double weight = 1.0 / sqrt(1.0 / (double)group->digs + plain->noise[g]);
-    double       model[DIG_FEATURES];
-    dig_fitted_features(batch->soil, plain, dig_whitened_digs_first(batch, g), model);
+    const struct dig_group *const group  = &batch->group[g];
+    const double                  weight = 1.0 / sqrt(1.0 / (double)group->digs + plain->noise[g]);
+    double                        model[DIG_FEATURES];
+    dig_fitted_features(batch->soil, plain, dig_batch_first(batch, g), model);
     put_rows(group, model, weight, r->y + r->rows);
     for (size_t k = 0; k < group->features; k++) {
         r->y[r->rows + k] = weight * group->mean[k] - r->y[r->rows + k];
@@ -209,8 +208,7 @@ struct told {
     struct states mean[DIG_TRAJECTORY_MAX];
 };
 
-static void tell(const struct dig_whitened_digs *const batch, const bool each,
-                 struct told *const told)
+static void tell(const struct dig_batch *const batch, const bool each, struct told *const told)
 {
     bool pitched = each;
     for (size_t i = 0; i < batch->digs; i++) {
@@ -236,7 +234,7 @@ static void tell(const struct dig_whitened_digs *const batch, const bool each,
 }
 
 // What dig i has that its group's mean has not; false where that is nothing.
-static bool differ(const struct dig_whitened_digs *const batch, const struct told *const told,
+static bool differ(const struct dig_batch *const batch, const struct told *const told,
                    const size_t i, struct states *const less)
 {
     bool any = false;
@@ -250,11 +248,11 @@ static bool differ(const struct dig_whitened_digs *const batch, const struct tol
     return any;
 }
 
-static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i,
+static void fill_dig(const struct dig_batch *const batch, const size_t i,
                      const struct states *const less, const double amplitude[DIG_FORCE_CHANNELS],
                      struct regression *const r)
 {
-    const struct dig_whitened_digs_group *const group = &batch->group[batch->dig[i].group];
+    const struct dig_group *const group = &batch->group[batch->dig[i].group];
     for (size_t k = 0; k < group->features; k++) {
         r->y[r->rows + k] = batch->dig[i].y[k] - group->mean[k];
     }
@@ -262,7 +260,7 @@ static void fill_dig(const struct dig_whitened_digs *const batch, const size_t i
     r->rows += group->features;
 }
 
-struct dig_regressed dig_regress(const struct dig_whitened_digs *const batch,
+struct dig_regressed dig_regress(const struct dig_batch *const  batch,
                                  const struct dig_fitted *const plain, const bool each)
 {
     assert(batch != NULL && plain != NULL);

@@ -37,25 +37,23 @@ struct choice {
 
 // The raw batch with what measured[].machine adds taken off: in the same units, so that the digs'
 // evidence of one answer compares with that of another.
-static void take_off_batch(const struct dig_whitened_digs *const raw,
-                           struct dig_whitened_digs *const       batch)
+static void take_off_batch(const struct dig_batch *const raw, struct dig_batch *const batch)
 {
     *batch = *raw;
     for (size_t i = 0; i < raw->digs; i++) {
         double feature[DIG_FEATURES];
         double added[DIG_FEATURES];
         dig_features_of(raw->measured[raw->dig[i].measured].machine, feature);
-        dig_whitened_digs_whiten(&raw->group[raw->dig[i].group], feature, added);
+        dig_batch_whiten(&raw->group[raw->dig[i].group], feature, added);
         for (size_t k = 0; k < DIG_FEATURES; k++) {
             batch->dig[i].y[k] -= added[k];
         }
     }
-    dig_whitened_digs_summarise(batch);
+    dig_batch_summarise(batch);
 }
 
 // The log evidence of the digs, of the best that the soil can be: *best.
-static double soil_evidence(const struct dig_whitened_digs *const batch,
-                            struct dig_fitted *const              best)
+static double soil_evidence(const struct dig_batch *const batch, struct dig_fitted *const best)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
@@ -89,12 +87,12 @@ static enum dig_status weigh_digs(const struct dig_trace_work *const     w,
                                   const struct dig_machine_answer *const answer, const bool open,
                                   double *const evidence, double z[DIG_STEPS_MAX])
 {
-    struct dig_whitened_digs batch;
-    struct dig_steps         steps;
-    struct dig_fitted        soil;
-    const enum dig_status    status =
+    struct dig_batch      batch;
+    struct dig_steps      steps;
+    struct dig_fitted     soil;
+    const enum dig_status status =
         open ? dig_machine_steps_make(w, answer, &steps)
-                : dig_trace_apply(w, answer->effects, answer->effect, answer->file);
+             : dig_trace_apply(w, answer->effects, answer->effect, answer->file);
     memset(z, 0, DIG_STEPS_MAX * sizeof z[0]);
     if (status == DIG_OK) {
         take_off_batch(w->batch, &batch);
@@ -238,7 +236,7 @@ static enum dig_status choose(struct dig_trace_work *const w, struct choice *con
     enum dig_status status = weigh_digs(w, &none, none.numbers > 0, &choice->soil0, z);
     dig_machine_steps_values(z, NULL, &none);
     // All that an answer could explain of the digs.
-    const double left = 0.5 * (w->before.squares - dig_whitened_digs_about(w->batch));
+    const double left = 0.5 * (w->before.squares - dig_batch_about(w->batch));
     for (size_t i = 0; i < air->answers; i++) {
         choice->of[i] = -INFINITY;
     }

@@ -75,9 +75,8 @@ static enum dig_status added_by(const struct dig_trace_work *const w, const size
     }
     memset(added, 0, DIG_TRAJECTORY_MAX * sizeof added[0]);
     for (size_t i = 0; i < w->batch->digs; i++) {
-        const struct dig_whitened_digs_group *const group =
-            &w->batch->group[w->batch->dig[i].group];
-        double feature[DIG_FEATURES];
+        const struct dig_group *const group = &w->batch->group[w->batch->dig[i].group];
+        double                        feature[DIG_FEATURES];
         dig_features_of((const double(*)[DIG_CURVE_POINTS])machine[w->batch->dig[i].measured],
                         feature);
         for (size_t f = 0; f < DIG_FEATURES; f++) {

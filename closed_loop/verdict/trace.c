@@ -293,7 +293,7 @@ static enum dig_status run(struct dig_trace_work *const w, struct dig_trace *con
 // What a trace works in, but for what has its size from the table.
 struct room {
     struct dig_response_surface surface;
-    struct dig_whitened_digs    batch;
+    struct dig_batch            batch;
     struct dig_search           search;
     struct dig_machine_finding  air;
     struct dig_trace_open       open;

@@ -63,8 +63,7 @@ static bool is_lifting(const struct dig_curve_set *const set, const size_t traje
 }
 
 // Sums squares over the scatter's by part: what[] is in units of the table.
-static void sum_by_part(const struct dig_trace_work *const          w,
-                        const struct dig_whitened_digs_group *const group,
+static void sum_by_part(const struct dig_trace_work *const w, const struct dig_group *const group,
                         const double what[DIG_FEATURES], const double variance,
                         double sum[DIG_TRACE_PHASES], double count[DIG_TRACE_PHASES])
 {
@@ -108,17 +107,16 @@ void dig_trace_fill_residuals(const struct dig_trace_work *const w,
     double sum[DIG_TRACE_PHASES]   = { 0.0 };
     double count[DIG_TRACE_PHASES] = { 0.0 };
     for (size_t g = 0; g < w->batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &w->batch->group[g];
-        double                                      model[DIG_FEATURES];
-        double                                      mean[DIG_FEATURES] = { 0.0 };
-        dig_fitted_features(w->soil, &w->search->plain, dig_whitened_digs_first(w->batch, g),
-                            model);
+        const struct dig_group *const group = &w->batch->group[g];
+        double                        model[DIG_FEATURES];
+        double                        mean[DIG_FEATURES] = { 0.0 };
+        dig_fitted_features(w->soil, &w->search->plain, dig_batch_first(w->batch, g), model);
         for (size_t i = 0; i < w->batch->digs; i++) {
             if (w->batch->dig[i].group != g) {
                 continue;
             }
             double feature[DIG_FEATURES];
-            dig_whitened_digs_features(&w->measured[w->batch->dig[i].measured], feature);
+            dig_batch_features(&w->measured[w->batch->dig[i].measured], feature);
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 mean[f] += feature[f] / (double)group->digs;
             }
@@ -279,7 +277,7 @@ void dig_trace_doubt_soil(struct dig_trace_work *const w)
 
 // A correction without a name was tried on the digs of each trajectory in turn
 // (closed_loop/search/unlisted.h): that says nothing where every trajectory was dug once.
-static bool was_tried(const struct dig_whitened_digs *const batch)
+static bool was_tried(const struct dig_batch *const batch)
 {
     bool tried = false;
     for (size_t g = 0; g < batch->groups; g++) {

@@ -129,8 +129,7 @@ static enum dig_status take_off_approaches(const struct dig_trace_work *const w,
 // Whitens the digs to fit to, about the gravel at place (NULL: not known yet), into the batch.
 static enum dig_status whiten(const struct dig_trace_work *const w, const double place[])
 {
-    return dig_whitened_digs_make(w->soil, w->scatter, w->digs, w->measured, w->fit, place,
-                                  w->batch);
+    return dig_batch_make(w->soil, w->scatter, w->digs, w->measured, w->fit, place, w->batch);
 }
 
 // Fits the plain hypothesis to the batch, thoroughly.
@@ -147,8 +146,8 @@ static double misfit_of(const struct dig_trace_work *const w, const struct dig_f
 {
     double misfit = fitted->misfit;
     for (size_t i = 0; i < w->batch->digs; i++) {
-        const struct dig_whitened_digs_dig *const   dig   = &w->batch->dig[i];
-        const struct dig_whitened_digs_group *const group = &w->batch->group[dig->group];
+        const struct dig_batch_dig *const dig   = &w->batch->dig[i];
+        const struct dig_group *const     group = &w->batch->group[dig->group];
         const double about = (double)group->features * (1.0 - 1.0 / (double)group->digs);
         misfit += group->log_det - about * w->measured[dig->measured].added.noise;
         for (size_t k = 0; k < group->features; k++) {
@@ -310,7 +309,7 @@ static enum dig_status least_misfit(const struct dig_trace_work *const w,
 }
 
 // Noise of a share of the mean dig's size, over the trajectories.
-static struct dig_lasting noise_of(const struct dig_whitened_digs *const batch, const double share,
+static struct dig_lasting noise_of(const struct dig_batch *const batch, const double share,
                                    const double lasts_s)
 {
     struct dig_lasting noise = { .memory_s = lasts_s };
@@ -325,11 +324,11 @@ static struct dig_lasting noise_of(const struct dig_whitened_digs *const batch, 
 enum dig_status dig_trace_tell_noise(const struct dig_trace_work *const w,
                                      struct dig_fitted *const           plain)
 {
-    const struct dig_whitened_digs without                       = *w->batch;
-    double                         start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    struct dig_lasting             told                          = { .memory_s = 0.0 };
-    double                         best                          = 0.0;
-    double                         place[DIG_HYPOTHESIS_NUMBERS];
+    const struct dig_batch without                       = *w->batch;
+    double                 start[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    struct dig_lasting     told                          = { .memory_s = 0.0 };
+    double                 best                          = 0.0;
+    double                 place[DIG_HYPOTHESIS_NUMBERS];
     memcpy(start, plain->number, DIG_AXES * sizeof start[0]);
     memcpy(place, start, sizeof place);
     enum dig_status status = least_misfit(w, plain->number, &told, start, &best);

@@ -30,7 +30,7 @@ struct dig_trace_work {
     struct dig_response_surface *surface;
     struct dig_scatter          *scatter;
     struct dig_soil             *soil;
-    struct dig_whitened_digs    *batch; // of the digs that may be fitted to
+    struct dig_batch            *batch; // of the digs that may be fitted to
     struct dig_search           *search;
     struct dig_machine_finding  *air;
     struct dig_trace_open       *open;

@@ -28,8 +28,7 @@ static int teardown(void **state)
 }
 
 // A gravel's mean of two beds along two trajectories, as a batch of two digs each.
-static void make_batch(const size_t entry, double place[DIG_AXES],
-                       struct dig_whitened_digs *const batch)
+static void make_batch(const size_t entry, double place[DIG_AXES], struct dig_batch *const batch)
 {
     static struct dig_measured mean[DIG_TRAJECTORY_MAX];
     static const bool          all[DIG_TRAJECTORY_MAX] = { true, true };
@@ -46,7 +45,7 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
     }
     assert_int_equal(digs, 2);
     dig_response_surface_place(surface, &dug->gravel[entry], place);
-    assert_int_equal(dig_whitened_digs_make(soil, scatter, digs, mean, all, place, batch), DIG_OK);
+    assert_int_equal(dig_batch_make(soil, scatter, digs, mean, all, place, batch), DIG_OK);
     for (size_t g = 0; g < batch->groups; g++) {
         batch->group[g].digs = 2;
     }
@@ -54,13 +53,13 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
 
 TEST(intervals_hold_between_the_grids_points)
 {
-    static struct dig_whitened_digs batch;
-    static struct dig_likelihood    likelihood;
-    static double                   residual[DIG_LIKELIHOOD_RESIDUALS];
-    static const double             middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    double                          log_likelihood                 = 0.0;
-    int                             held                           = 0;
-    size_t                          gravels                        = 0;
+    static struct dig_batch      batch;
+    static struct dig_likelihood likelihood;
+    static double                residual[DIG_LIKELIHOOD_RESIDUALS];
+    static const double          middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    double                       log_likelihood                 = 0.0;
+    int                          held                           = 0;
+    size_t                       gravels                        = 0;
     for (size_t e = 0; e < dug->entries; e++) {
         double            place[DIG_AXES];
         struct dig_fitted fitted;

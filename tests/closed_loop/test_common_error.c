@@ -11,10 +11,10 @@
 
 enum { DIGS = 3, DRAWS = 20000 };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
+static struct dig_measured measured[DIGS];
+static struct dig_batch    batch;
 
-static const struct dig_whitened_digs_group *make_group(void)
+static const struct dig_group *make_group(void)
 {
     const struct dig_gravel gravel = { { 0.5, 0.5, 2500 } };
     uint64_t                seed   = 3;
@@ -26,7 +26,7 @@ static const struct dig_whitened_digs_group *make_group(void)
 }
 
 // A factor that changes along the dig and from channel to channel.
-static struct dig_common_error some_error(const struct dig_whitened_digs_group *const group)
+static struct dig_common_error some_error(const struct dig_group *const group)
 {
     struct dig_common_error error = { .even = 0.05, .shift = { .shifts = 2 } };
     for (size_t f = 0; f < DIG_FEATURES; f++) {
@@ -45,12 +45,12 @@ static struct dig_common_error some_error(const struct dig_whitened_digs_group *
 // and the smooth one, over it are chi squared, in the mean and in their variance.
 TEST(what_is_drawn_has_the_covariance_that_is_built)
 {
-    const struct dig_whitened_digs_group *const group = make_group();
-    const struct dig_common_error               error = some_error(group);
-    const double                                n     = (double)group->features;
-    uint64_t                                    seed  = 11;
-    double                                      sum   = 0.0;
-    double                                      sum2  = 0.0;
+    const struct dig_group *const group = make_group();
+    const struct dig_common_error error = some_error(group);
+    const double                  n     = (double)group->features;
+    uint64_t                      seed  = 11;
+    double                        sum   = 0.0;
+    double                        sum2  = 0.0;
     for (int i = 0; i < DRAWS; i++) {
         double y[DIG_FEATURES];
         dig_common_error_draw(group, &error, &seed, y);
@@ -70,16 +70,16 @@ TEST(what_is_drawn_has_the_covariance_that_is_built)
 // of ten times as much are near those of ten sigmas, however small the scatter is beside it.
 TEST(a_smooth_factor_is_as_uncertain_as_its_size)
 {
-    const struct dig_whitened_digs_group *const group = make_group();
-    struct dig_common_error                     error = { .even = 0.0 };
-    double                                      ten[DIG_FEATURES];
-    double                                      y[DIG_FEATURES];
+    const struct dig_group *const group = make_group();
+    struct dig_common_error       error = { .even = 0.0 };
+    double                        ten[DIG_FEATURES];
+    double                        y[DIG_FEATURES];
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         error.size[0][f] = 20.0 * group->amplitude[f / DIG_FEATURE_BINS];
         ten[f]           = 10.0 * error.size[0][f];
     }
     dig_common_error_build(group, &error);
-    dig_whitened_digs_whiten(group, ten, y);
+    dig_batch_whiten(group, ten, y);
     const double squares = dig_common_error_squares(group, &error, y);
     assert_true(squares > 100.0 && squares < 4.0 * 100.0);
 }
@@ -87,16 +87,16 @@ TEST(a_smooth_factor_is_as_uncertain_as_its_size)
 // A dig off by so many sigmas of a shift, and by nothing else, is as far off as that says.
 TEST(a_shift_is_as_uncertain_as_it_says)
 {
-    const struct dig_whitened_digs_group *const group = make_group();
-    struct dig_common_error                     error = { .even = 1e-4, .shift = { .shifts = 3 } };
-    double                                      three[DIG_FEATURES];
-    double                                      y[DIG_FEATURES];
+    const struct dig_group *const group = make_group();
+    struct dig_common_error       error = { .even = 1e-4, .shift = { .shifts = 3 } };
+    double                        three[DIG_FEATURES];
+    double                        y[DIG_FEATURES];
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         error.shift.of[2][f] = 20.0 * group->amplitude[f / DIG_FEATURE_BINS] * cos(0.4 * (double)f);
         three[f]             = 3.0 * error.shift.of[2][f];
     }
     dig_common_error_build(group, &error);
-    dig_whitened_digs_whiten(group, three, y);
+    dig_batch_whiten(group, three, y);
     assert_close(dig_common_error_squares(group, &error, y), 9.0, 1e-2);
 }
 
@@ -104,14 +104,14 @@ TEST(a_shift_is_as_uncertain_as_it_says)
 // gravel leaves nothing of it.
 TEST(what_beds_differ_by_as_gravels_is_no_noise)
 {
-    const struct dig_whitened_digs_group *const group = make_group();
-    struct dig_common_error                     error = { .even = 0.1 };
-    double                                      y[DIG_FEATURES];
+    const struct dig_group *const group = make_group();
+    struct dig_common_error       error = { .even = 0.1 };
+    double                        y[DIG_FEATURES];
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         error.shift.as_gravels[0][f] = group->amplitude[f / DIG_FEATURE_BINS];
     }
     dig_common_error_build(group, &error);
-    dig_whitened_digs_whiten(group, error.shift.as_gravels[0], y);
+    dig_batch_whiten(group, error.shift.as_gravels[0], y);
     assert_true(dig_common_error_squares(group, &error, y) < 1.0);
     assert_close(error.noise, 0.1, 1e-12);
 }
@@ -132,8 +132,8 @@ static double between(const struct dig_common_error *const error, const size_t a
 // x' C x, C by its formula.
 TEST(a_covariance_is_of_the_features_that_were_measured)
 {
-    static struct dig_whitened_digs_group group;
-    struct dig_gravel                     gravel = { { 0.5, 0.5, 2500 } };
+    static struct dig_group group;
+    struct dig_gravel       gravel = { { 0.5, 0.5, 2500 } };
     (void)make_group();
     measured[1].first = 0.25;
     measured[2].last  = 0.85;
@@ -166,9 +166,9 @@ TEST(a_covariance_is_of_the_features_that_were_measured)
 
 TEST(without_parts_only_scatter_and_the_even_part_are_left)
 {
-    const struct dig_whitened_digs_group *const group           = make_group();
-    struct dig_common_error                     error           = { .even = 0.1 };
-    double                                      y[DIG_FEATURES] = { 0.0 };
+    const struct dig_group *const group           = make_group();
+    struct dig_common_error       error           = { .even = 0.1 };
+    double                        y[DIG_FEATURES] = { 0.0 };
     dig_common_error_build(group, &error);
     y[4] = 3.0;
     assert_close(dig_common_error_squares(group, &error, y), 9.0 / (1.0 / DIGS + 0.1), 1e-9);

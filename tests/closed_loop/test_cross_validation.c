@@ -7,9 +7,9 @@
 
 enum { DIGS = 7 };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
-static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_measured     measured[DIGS];
+static struct dig_batch        batch;
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
 // Six digs of one trajectory and one of the other at this place.
 static void dig_with_lone(const size_t lone, const double layer, uint64_t seed)
@@ -92,14 +92,14 @@ TEST(what_cannot_be_fitted_to_the_others_counts_nothing)
 // The only real dig takes its trajectory along; the others keep their numbers, means are theirs.
 static void expect_the_others(const size_t lone)
 {
-    static struct dig_whitened_digs others;
+    static struct dig_batch others;
     dig_with_lone(lone, 0.0, 9);
     for (size_t out = 0; out < DIGS; out++) {
-        dig_whitened_digs_leave_out(&batch, out, &others);
+        dig_batch_leave_out(&batch, out, &others);
         assert_int_equal(others.digs, DIGS - 1);
         assert_int_equal(others.groups, out == lone ? 1 : 2);
         for (size_t i = 0; i < others.digs; i++) {
-            const struct dig_whitened_digs_dig *const was = &batch.dig[i < out ? i : i + 1];
+            const struct dig_batch_dig *const was = &batch.dig[i < out ? i : i + 1];
             assert_int_equal(others.dig[i].measured, was->measured);
             assert_memory_equal(others.dig[i].y, was->y, sizeof was->y);
             assert_int_equal(others.group[others.dig[i].group].trajectory,
@@ -134,7 +134,7 @@ TEST(what_is_open_is_told_of_the_dig_left_out)
     const double gain = gain_of(DIG_EFFECT_LAYERING);
     steps             = (struct dig_steps){ .steps = 1 };
     for (size_t g = 0; g < batch.groups; g++) {
-        const struct dig_whitened_digs_group *const group = &batch.group[g];
+        const struct dig_group *const group = &batch.group[g];
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             steps.of[0][group->trajectory][f] =
                 (f % 2 == 0 ? 0.1 : -0.1) * group->amplitude[f / DIG_FEATURE_BINS];

@@ -34,8 +34,7 @@ static bool is_judged(const enum dig_effect_id effect)
 }
 
 // The mean of an entry's beds along each trajectory, as so many digs of it.
-static void make_batch(const size_t entry, double place[DIG_AXES],
-                       struct dig_whitened_digs *const batch)
+static void make_batch(const size_t entry, double place[DIG_AXES], struct dig_batch *const batch)
 {
     static struct dig_measured dig[DIG_TRAJECTORY_MAX * BEDS];
     bool                       all[DIG_TRAJECTORY_MAX * BEDS];
@@ -48,7 +47,7 @@ static void make_batch(const size_t entry, double place[DIG_AXES],
         }
     }
     dig_response_surface_place(surface, &dug->entry[entry].gravel, place);
-    assert_int_equal(dig_whitened_digs_make(soil, scatter, digs, dig, all, place, batch), DIG_OK);
+    assert_int_equal(dig_batch_make(soil, scatter, digs, dig, all, place, batch), DIG_OK);
     for (size_t g = 0; g < batch->groups; g++) {
         batch->group[g].repeats = 0.0; // they are alike for being means
     }
@@ -61,11 +60,11 @@ static double u_of(const struct dig_entry *const e)
 
 TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
 {
-    static struct dig_whitened_digs batch;
-    static struct dig_likelihood    likelihood;
-    static double                   residual[DIG_LIKELIHOOD_RESIDUALS];
-    double                          squares[DIG_EFFECTS] = { 0.0 }, of[DIG_EFFECTS] = { 0.0 };
-    double                          all = 0.0, features = 0.0, misfit = 0.0;
+    static struct dig_batch      batch;
+    static struct dig_likelihood likelihood;
+    static double                residual[DIG_LIKELIHOOD_RESIDUALS];
+    double                       squares[DIG_EFFECTS] = { 0.0 }, of[DIG_EFFECTS] = { 0.0 };
+    double                       all = 0.0, features = 0.0, misfit = 0.0;
     for (size_t i = 0; i < dug->entries; i++) {
         const struct dig_entry *const e          = &dug->entry[i];
         const struct dig_hypothesis   hypothesis = { .effects = 1, .effect = { e->effect } };
@@ -101,10 +100,10 @@ TEST(what_the_digs_leave_of_an_effect_is_as_large_as_expected)
 
 TEST(intervals_beside_an_effect_hold)
 {
-    static struct dig_whitened_digs batch;
-    const double                    middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    const struct dig_hypothesis     plain                          = { .effects = 0 };
-    size_t                          held[2] = { 0, 0 }, all[2] = { 0, 0 };
+    static struct dig_batch     batch;
+    const double                middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    const struct dig_hypothesis plain                          = { .effects = 0 };
+    size_t                      held[2] = { 0, 0 }, all[2] = { 0, 0 };
     for (size_t i = 0; i < dug->entries; i++) {
         const struct dig_entry *const e      = &dug->entry[i];
         const struct dig_hypothesis   single = { .effects = 1, .effect = { e->effect } };
@@ -141,11 +140,11 @@ TEST(intervals_beside_an_effect_hold)
 // rock adds may be off by a share of itself, so that without a rock nothing explains it.
 TEST(a_rock_that_is_felt_is_not_absent)
 {
-    static struct dig_whitened_digs batch;
-    static struct dig_measured      dig[2];
-    static const bool               all[2] = { true, true };
-    const struct dig_gravel         gravel = { { 0.35, 0.75, 1800 } };
-    const struct dig_entry          rock   = { .effect = DIG_EFFECT_OBSTACLE, .magnitude = 0.022 };
+    static struct dig_batch    batch;
+    static struct dig_measured dig[2];
+    static const bool          all[2] = { true, true };
+    const struct dig_gravel    gravel = { { 0.35, 0.75, 1800 } };
+    const struct dig_entry     rock   = { .effect = DIG_EFFECT_OBSTACLE, .magnitude = 0.022 };
     struct dig_fitted truth = { .hypothesis = { .effects = 1, .effect = { rock.effect } } };
     struct dig_fitted fitted;
     dig_response_surface_place(surface, &gravel, truth.number);
@@ -160,8 +159,7 @@ TEST(a_rock_that_is_felt_is_not_absent)
                                         .measured   = { true, true, true } };
         dig_fitted_curve(soil, &truth, &dig[t], dig[t].value);
     }
-    assert_int_equal(dig_whitened_digs_make(soil, scatter, 2, dig, all, truth.number, &batch),
-                     DIG_OK);
+    assert_int_equal(dig_batch_make(soil, scatter, 2, dig, all, truth.number, &batch), DIG_OK);
     dig_hypothesis_fit(&batch, &truth.hypothesis, truth.number, DIG_FIT_THOROUGH, &fitted);
     dig_posterior_intervals(&batch, 1, &fitted, NULL);
     print_message("a rock of 22 mm: %.1f (%.1f to %.1f)\n", 35 * fitted.number[DIG_AT_U(0)],

@@ -7,10 +7,10 @@
 
 enum { DIGS = 8 };
 
-static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
-static struct dig_fitted        plain;
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_measured     measured[DIGS];
+static struct dig_batch        batch;
+static struct dig_fitted       plain;
 
 static int make(void **state)
 {

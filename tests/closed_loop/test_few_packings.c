@@ -82,15 +82,15 @@ static size_t found(const double strength)
         set->axis_count[a] = 1;
     }
     for (size_t c = 0; c < CAMPAIGNS; c++) {
-        static const bool               take[DIGS] = { true, true, true };
-        static struct dig_whitened_digs batch;
-        static struct dig_search        search;
-        struct dig_scatter_residual     residual[PACKINGS];
-        struct dig_measured             dig[DIGS];
-        struct dig_response_surface    *surface         = malloc(sizeof *surface);
-        struct dig_scatter             *scatter         = NULL;
-        struct dig_soil                *soil            = NULL;
-        const double                    place[DIG_AXES] = { 0.0 };
+        static const bool            take[DIGS] = { true, true, true };
+        static struct dig_batch      batch;
+        static struct dig_search     search;
+        struct dig_scatter_residual  residual[PACKINGS];
+        struct dig_measured          dig[DIGS];
+        struct dig_response_surface *surface         = malloc(sizeof *surface);
+        struct dig_scatter          *scatter         = NULL;
+        struct dig_soil             *soil            = NULL;
+        const double                 place[DIG_AXES] = { 0.0 };
         dig_table(set, &seed, residual);
         for (size_t i = 0; i < DIGS; i++) {
             dig[i]       = make_dig(strength, &seed);
@@ -99,8 +99,7 @@ static size_t found(const double strength)
         assert_int_equal(dig_response_surface_fit(set, surface), DIG_OK);
         assert_int_equal(dig_scatter_pool(surface, PACKINGS, residual, &scatter), DIG_OK);
         assert_int_equal(dig_soil_create(surface, NULL, scatter, &soil), DIG_OK);
-        assert_int_equal(dig_whitened_digs_make(soil, scatter, DIGS, dig, take, place, &batch),
-                         DIG_OK);
+        assert_int_equal(dig_batch_make(soil, scatter, DIGS, dig, take, place, &batch), DIG_OK);
         dig_search_run(&batch, level, DRAWS, c, &search);
         count += search.significant ? 1 : 0;
         free(soil);

@@ -44,21 +44,21 @@ static void true_features(const struct dig_gravel *const gravel, double feature[
 
 // Mean square of what tables of other packings say of this gravel beside the truth, in the group's
 // units: by making the tables.
-static double made_variance(const struct dig_whitened_digs_group *const group,
-                            const struct dig_gravel *const              gravel)
+static double made_variance(const struct dig_group *const  group,
+                            const struct dig_gravel *const gravel)
 {
     double truth[DIG_FEATURES];
     double y_true[DIG_FEATURES];
     double sum = 0.0;
     true_features(gravel, truth);
-    dig_whitened_digs_whiten(group, truth, y_true);
+    dig_batch_whiten(group, truth, y_true);
     for (uint64_t w = 0; w < WORLDS; w++) {
         struct made_world other = made_world(1000 + w);
         double            place[DIG_AXES], feature[DIG_FEATURES], size[DIG_FORCE_CHANNELS];
         double            y[DIG_FEATURES];
         dig_response_surface_place(other.surface, gravel, place);
         dig_response_surface_features(other.surface, MADE_ACTUAL, place, feature, size);
-        dig_whitened_digs_whiten(group, feature, y);
+        dig_batch_whiten(group, feature, y);
         for (size_t k = 0; k < group->features; k++) {
             sum += (y[k] - y_true[k]) * (y[k] - y_true[k]) / (double)group->features / WORLDS;
         }
@@ -73,7 +73,7 @@ TEST(the_tables_error_counts_for_less_beside_larger_digs)
 {
     const struct dig_gravel gravel = { { 0.6, 0.55, 3900 } };
     for (double larger = 1.0; larger < 4.0; larger += 2.0) {
-        static struct dig_whitened_digs batch;
+        static struct dig_batch batch;
         dig(&gravel, larger, 9);
         batch_digs(DIGS, measured, &gravel, &batch);
         const struct dig_fitted fitted = fit_plain(&batch);
@@ -102,7 +102,7 @@ static double over_covariance(const size_t n, const double inverse[], const doub
 
 // The squares of the likelihood as its header has it, worked out anew at other numbers than those
 // of the fit that tells the covariance; *means: of that, the means'.
-static double squares_of(const struct dig_whitened_digs *const b, const struct dig_fitted *const by,
+static double squares_of(const struct dig_batch *const b, const struct dig_fitted *const by,
                          const struct dig_fitted *const f, double *const means)
 {
     double                  sum = 0.0;
@@ -110,14 +110,14 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
     *means = 0.0;
     dig_hypothesis_errors(b, by, error);
     for (size_t g = 0; g < b->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &b->group[g];
-        double                                      model[DIGS][DIG_FEATURES];
-        double                                      rest[DIG_FEATURES];
-        double                                      mean[DIG_FEATURES] = { 0.0 };
+        const struct dig_group *const group = &b->group[g];
+        double                        model[DIGS][DIG_FEATURES];
+        double                        rest[DIG_FEATURES];
+        double                        mean[DIG_FEATURES] = { 0.0 };
         for (size_t i = 0; i < b->digs; i++) {
             double feature[DIG_FEATURES];
             dig_fitted_features(soil, f, &b->measured[i], feature);
-            dig_whitened_digs_whiten(group, feature, model[i]);
+            dig_batch_whiten(group, feature, model[i]);
             for (size_t k = 0; b->dig[i].group == g && k < group->features; k++) {
                 mean[k] += model[i][k] / (double)group->digs;
             }
@@ -136,8 +136,7 @@ static double squares_of(const struct dig_whitened_digs *const b, const struct d
 }
 
 // Whether there are clearly smaller squares a little off.
-static bool is_lower_beside(const struct dig_whitened_digs *const b,
-                            const struct dig_fitted *const        f)
+static bool is_lower_beside(const struct dig_batch *const b, const struct dig_fitted *const f)
 {
     bool lower = false;
     for (size_t i = 0; i < DIG_AXES + f->hypothesis.effects; i++) {
@@ -165,7 +164,7 @@ TEST(a_fit_ends_where_the_squares_it_tells_are_least)
     };
     const struct dig_gravel gravel                        = { { 0.6, 0.55, 2500 } };
     const double            start[DIG_HYPOTHESIS_NUMBERS] = { 0.2, -0.3, 0.1, 0.1, 1.0, 0.05, 1.0 };
-    static struct dig_whitened_digs batch;
+    static struct dig_batch batch;
     dig(&gravel, 1.3, 17);
     for (size_t i = 0; i < DIGS; i++) {
         measured[i].order = i;
@@ -185,8 +184,8 @@ TEST(a_fit_ends_where_the_squares_it_tells_are_least)
 // A rock's template may be farther off than others'.
 TEST(a_rock_of_no_size_makes_no_room_for_what_is_beside_it)
 {
-    static struct dig_whitened_digs batch;
-    const struct dig_gravel         gravel = { { 0.6, 0.55, 2500 } };
+    static struct dig_batch batch;
+    const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
     dig(&gravel, 1.0, 10);
     batch_digs(DIGS, measured, &gravel, &batch);
     struct dig_fitted one   = { .hypothesis = { .effects = 1, .effect = { DIG_EFFECT_LAYERING } } };

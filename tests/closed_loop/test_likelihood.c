@@ -15,9 +15,9 @@ enum { DIGS = 4, STEPS = 2, GRID = 141 };
 
 static const double reach = 7.0; // of the grid, in sigmas
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
-static struct dig_steps         steps;
+static struct dig_measured measured[DIGS];
+static struct dig_batch    batch;
+static struct dig_steps    steps;
 
 static int campaigns(void)
 {
@@ -49,22 +49,22 @@ static void make_digs(const struct dig_gravel *const gravel, uint64_t *const see
 }
 
 // Takes z steps off the digs of a batch.
-static void shift(struct dig_whitened_digs *const digs, const double z[STEPS])
+static void shift(struct dig_batch *const digs, const double z[STEPS])
 {
     for (size_t i = 0; i < digs->digs; i++) {
-        const struct dig_whitened_digs_group *const group = &digs->group[digs->dig[i].group];
+        const struct dig_group *const group = &digs->group[digs->dig[i].group];
         for (size_t k = 0; k < STEPS; k++) {
             double y[DIG_FEATURES];
-            dig_whitened_digs_whiten(group, steps.of[k][group->trajectory], y);
+            dig_batch_whiten(group, steps.of[k][group->trajectory], y);
             for (size_t f = 0; f < DIG_FEATURES; f++) {
                 digs->dig[i].y[f] -= z[k] * y[f];
             }
         }
     }
-    dig_whitened_digs_summarise(digs);
+    dig_batch_summarise(digs);
 }
 
-static double misfit_of(const struct dig_whitened_digs *const digs, const double x[], double z[])
+static double misfit_of(const struct dig_batch *const digs, const double x[], double z[])
 {
     static struct dig_likelihood l;
     static double                r[DIG_LIKELIHOOD_RESIDUALS];
@@ -79,13 +79,13 @@ static double misfit_of(const struct dig_whitened_digs *const digs, const double
 // Against the integral itself, over a grid of z, of the likelihood without steps.
 TEST(the_likelihood_is_the_integral_over_the_steps)
 {
-    static struct dig_whitened_digs shifted;
-    const struct dig_gravel         gravel   = { { 0.6, 0.6, 2500 } };
-    const double                    x[]      = { 0.1, -0.2, 0.15 };
-    uint64_t                        seed     = 3;
-    double                          sum      = 0.0;
-    double                          mean[]   = { 0.0, 0.0 };
-    double                          z[STEPS] = { 0.0 };
+    static struct dig_batch shifted;
+    const struct dig_gravel gravel   = { { 0.6, 0.6, 2500 } };
+    const double            x[]      = { 0.1, -0.2, 0.15 };
+    uint64_t                seed     = 3;
+    double                  sum      = 0.0;
+    double                  mean[]   = { 0.0, 0.0 };
+    double                  z[STEPS] = { 0.0 };
     make_digs(&gravel, &seed);
     const double none = misfit_of(&batch, x, z);
     for (int i = 0; i < GRID * GRID; i++) {
@@ -121,10 +121,10 @@ TEST(the_likelihood_is_the_integral_over_the_steps)
 // them does what another gravel would do.
 TEST(fitted_steps_are_as_far_off_as_is_said)
 {
-    static struct dig_whitened_digs drawn;
-    const struct dig_gravel         gravel     = { { 0.6, 0.6, 2500 } };
-    uint64_t                        seed       = 8;
-    double                          sum[STEPS] = { 0.0 };
+    static struct dig_batch drawn;
+    const struct dig_gravel gravel     = { { 0.6, 0.6, 2500 } };
+    uint64_t                seed       = 8;
+    double                  sum[STEPS] = { 0.0 };
     make_digs(&gravel, &seed);
     const struct dig_fitted truth = fit_plain(&batch);
     for (int c = 0; c < campaigns(); c++) {

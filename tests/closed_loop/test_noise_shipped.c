@@ -75,22 +75,21 @@ static int setup(void **state)
 }
 
 static void make_batch(const struct ground *const g, double place[DIG_AXES],
-                       struct dig_whitened_digs *const batch)
+                       struct dig_batch *const batch)
 {
     bool all[DIGS_MAX];
     memset(all, true, sizeof all);
     dig_response_surface_place(surface, &g->gravel, place);
-    assert_int_equal(dig_whitened_digs_make(soil, scatter, g->digs, g->dig, all, place, batch),
-                     DIG_OK);
+    assert_int_equal(dig_batch_make(soil, scatter, g->digs, g->dig, all, place, batch), DIG_OK);
 }
 
 // At the gravel that was dug, the means differ from the table by no more than the covariance says,
 // and by not much less; so do the digs from their means.
 TEST(what_the_digs_leave_of_the_table_is_as_large_as_expected)
 {
-    static struct dig_whitened_digs batch;
-    static struct dig_likelihood    likelihood;
-    static double                   residual[DIG_LIKELIHOOD_RESIDUALS];
+    static struct dig_batch      batch;
+    static struct dig_likelihood likelihood;
+    static double                residual[DIG_LIKELIHOOD_RESIDUALS];
     double means = 0.0, features = 0.0, about = 0.0, freedom = 0.0, misfit = 0.0;
     for (size_t i = 0; i < grounds; i++) {
         double place[DIG_AXES];
@@ -122,9 +121,9 @@ TEST(what_the_digs_leave_of_the_table_is_as_large_as_expected)
 
 TEST(intervals_of_the_gravel_hold)
 {
-    static struct dig_whitened_digs batch;
-    const double                    middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
-    size_t                          held                           = 0;
+    static struct dig_batch batch;
+    const double            middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };
+    size_t                  held                           = 0;
     for (size_t i = 0; i < grounds; i++) {
         struct dig_fitted fitted;
         double            place[DIG_AXES];

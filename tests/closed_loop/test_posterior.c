@@ -13,8 +13,8 @@
 
 enum { DIGS = 4, CAMPAIGNS = 100 };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
+static struct dig_measured measured[DIGS];
+static struct dig_batch    batch;
 
 static const struct dig_hypothesis plain = { .effects = 0 };
 
@@ -29,12 +29,12 @@ static struct dig_fitted fit_digs(const struct dig_gravel *const gravel, uint64_
 // to three sigmas of a binomial, more where a bound is counted in.
 TEST(nine_intervals_of_ten_hold_the_truth)
 {
-    static struct dig_whitened_digs drawn;
-    const struct dig_gravel         gravel    = { { 0.6, 0.6, 2500 } };
-    uint64_t                        seed      = 21;
-    struct dig_fitted               truth     = fit_digs(&gravel, &seed);
-    double                          held      = 0.0;
-    const int                       campaigns = test_is_quick() ? CAMPAIGNS / 4 : CAMPAIGNS;
+    static struct dig_batch drawn;
+    const struct dig_gravel gravel    = { { 0.6, 0.6, 2500 } };
+    uint64_t                seed      = 21;
+    struct dig_fitted       truth     = fit_digs(&gravel, &seed);
+    double                  held      = 0.0;
+    const int               campaigns = test_is_quick() ? CAMPAIGNS / 4 : CAMPAIGNS;
     for (int c = 0; c < campaigns; c++) {
         struct dig_fitted       fitted;
         struct dig_common_error error[DIG_TRAJECTORY_MAX];
@@ -113,7 +113,7 @@ TEST(digs_beyond_all_numbers_leave_the_whole_of_the_bounds)
     uint64_t                seed   = 3;
     struct dig_fitted       fitted = fit_digs(&gravel, &seed);
     batch.dig[0].y[0]              = 1e200;
-    dig_whitened_digs_summarise(&batch);
+    dig_batch_summarise(&batch);
     (void)alarm(60);
     dig_posterior_intervals(&batch, 1, &fitted, NULL);
     (void)alarm(0);

@@ -10,8 +10,8 @@
 
 enum { DIGS = 6, DRAWS = 24 };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
+static struct dig_measured measured[DIGS];
+static struct dig_batch    batch;
 
 static int rocky_setup(void **state)
 {

@@ -1,7 +1,7 @@
-// Tests for closed_loop/fit/whitened_digs.c, and what a batch and a hypothesis make of it: the made
+// Tests for closed_loop/fit/batch.c, and what a batch and a hypothesis make of it: the made
 // table's digs, some recorded again with noise of sensors.
 
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/batch.h"
 
 #include "closed_loop/fit/hypothesis.h"
 #include "tests/closed_loop/world_fixture.h"
@@ -13,8 +13,8 @@ enum { DIGS = 8 };
 
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
+static struct dig_measured measured[DIGS];
+static struct dig_batch    batch;
 
 // Each bed is dug and recorded so many times, every time with noise of this share of the moment.
 static void make_batch(const size_t times, const double noise, uint64_t seed)
@@ -48,12 +48,12 @@ TEST(recordings_of_one_bed_count_once)
 
 TEST(without_a_dig_its_bed_counts_as_long_as_another_has_it)
 {
-    static struct dig_whitened_digs others;
+    static struct dig_batch others;
     make_batch(2, 0.03, 5);
-    dig_whitened_digs_leave_out(&batch, 0, &others);
+    dig_batch_leave_out(&batch, 0, &others);
     assert_close(others.group[0].repeats, 1.0 / 4 - 1.0 / 7, 1e-12);
     batch = others;
-    dig_whitened_digs_leave_out(&batch, 0, &others);
+    dig_batch_leave_out(&batch, 0, &others);
     assert_close(others.group[0].repeats, 1.0 / 3 - 1.0 / 6, 1e-12);
 }
 

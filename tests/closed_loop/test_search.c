@@ -28,7 +28,7 @@ static void grow(const double times[DIGS])
     }
 }
 
-static struct dig_whitened_digs batch; // of the digs searched last
+static struct dig_batch batch; // of the digs searched last
 
 static struct dig_search search_some(const struct dig_gravel *const gravel, const size_t digs,
                                      const double false_alarm, const uint64_t seed)
@@ -79,12 +79,12 @@ TEST(nothing_is_found_where_nothing_is)
 static void draw_with_noise(const double share, const double memory_s)
 {
     enum { MANY = 40, CAMPAIGNS = 30 };
-    const struct dig_gravel         gravel = { { 0.6, 0.55, 2500 } };
-    static struct dig_measured      loud[MANY];
-    static struct dig_whitened_digs drawn[2];
-    struct dig_common_error         error[DIG_TRAJECTORY_MAX];
-    double                          mean = 0.0;
-    uint64_t                        seed = 5;
+    const struct dig_gravel    gravel = { { 0.6, 0.55, 2500 } };
+    static struct dig_measured loud[MANY];
+    static struct dig_batch    drawn[2];
+    struct dig_common_error    error[DIG_TRAJECTORY_MAX];
+    double                     mean = 0.0;
+    uint64_t                   seed = 5;
     dig_in_turn(MANY, &gravel, 0, NULL, NULL, &seed, loud);
     for (size_t i = 0; i < MANY; i++) {
         dig_add_noise(share, memory_s, &seed, &loud[i]);
@@ -374,9 +374,9 @@ TEST(what_is_open_of_the_machine_is_no_effect_of_the_soil)
             struct dig_steps steps = open_beside(&gravel);
             batch.steps            = &steps;
             dig_steps_settle(&batch, off);
-            struct dig_whitened_digs closed = batch;
-            steps.middle[0]                 = 0.3; // what free air says: of a variance of 1
-            batch.steps                     = &steps;
+            struct dig_batch closed = batch;
+            steps.middle[0]         = 0.3; // what free air says: of a variance of 1
+            batch.steps             = &steps;
             dig_search_run(&batch, 0.01, DRAWS, seed, &found);
             if (effects == 1) {
                 assert_true(found.significant && !found.unlisted);

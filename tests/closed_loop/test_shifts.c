@@ -6,9 +6,9 @@
 
 enum { DIGS = 2 };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
-static const struct dig_gravel  gravel = { { 0.6, 0.55, 2500 } };
+static struct dig_measured     measured[DIGS];
+static struct dig_batch        batch;
+static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
 // A dig of either trajectory.
 static void make_batch(double place[DIG_AXES])
@@ -31,8 +31,8 @@ static void fill(const struct dig_hypothesis *const hypothesis, const double num
 // How large a shift is beside a dig, rms over the amplitude.
 static double size_of(const double shift[DIG_FEATURES])
 {
-    const struct dig_whitened_digs_group *const group = &batch.group[0];
-    double                                      sum   = 0.0;
+    const struct dig_group *const group = &batch.group[0];
+    double                        sum   = 0.0;
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         sum += pow(shift[f] / group->amplitude[f / DIG_FEATURE_BINS], 2.0) / DIG_FEATURES;
     }
@@ -92,7 +92,7 @@ static double squares_of_beds(const struct dig_scatter *const scatter, const siz
     batch.group[0].digs = digs;
     fill(&plain, number, &shifts);
     for (size_t a = 0; a < DIG_AXES; a++) {
-        dig_whitened_digs_whiten(&batch.group[0], shifts.as_gravels[a], y);
+        dig_batch_whiten(&batch.group[0], shifts.as_gravels[a], y);
         for (size_t f = 0; f < DIG_FEATURES; f++) {
             sum += y[f] * y[f];
         }

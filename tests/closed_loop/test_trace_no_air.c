@@ -10,7 +10,7 @@
 enum { DIGS = 4 };
 
 static struct dig_measured        measured[DIGS];
-static struct dig_whitened_digs   batch;
+static struct dig_batch           batch;
 static struct dig_search          search;
 static struct dig_machine_finding air;
 

@@ -8,7 +8,7 @@
 enum { DIGS = 6, DRAWS = 24 };
 
 static struct dig_measured             measured[DIGS];
-static struct dig_whitened_digs        batch;
+static struct dig_batch                batch;
 static struct dig_search               found;
 static struct dig_machine_finding      shown;
 static const struct dig_trace_settings settings = { .false_alarm = 0.01 };

@@ -8,7 +8,7 @@
 enum { DIGS = 7 };
 
 static const struct dig_gravel   gravel = { { 0.6, 0.55, 2500 } };
-static struct dig_whitened_digs  batch;
+static struct dig_batch          batch;
 static struct dig_measured       measured[DIGS];
 static struct dig_model_unlisted share;
 

@@ -84,8 +84,7 @@ static inline void dig_add_noise(const double share, const double memory_s, uint
 
 // The batch of all these digs, thought to be of this gravel (NULL: not known).
 static inline void batch_digs(const size_t digs, const struct dig_measured measured[],
-                              const struct dig_gravel *const  gravel,
-                              struct dig_whitened_digs *const batch)
+                              const struct dig_gravel *const gravel, struct dig_batch *const batch)
 {
     bool   take[DIG_MEASURED_MAX];
     double place[DIG_AXES];
@@ -93,13 +92,13 @@ static inline void batch_digs(const size_t digs, const struct dig_measured measu
     if (gravel != NULL) {
         dig_response_surface_place(world.surface, gravel, place);
     }
-    assert_int_equal(dig_whitened_digs_make(soil, world.scatter, digs, measured, take,
-                                            gravel != NULL ? place : NULL, batch),
+    assert_int_equal(dig_batch_make(soil, world.scatter, digs, measured, take,
+                                    gravel != NULL ? place : NULL, batch),
                      DIG_OK);
 }
 
 // The plain gravel that suits a batch best.
-static inline struct dig_fitted fit_plain(const struct dig_whitened_digs *const batch)
+static inline struct dig_fitted fit_plain(const struct dig_batch *const batch)
 {
     static const struct dig_hypothesis none                           = { .effects = 0 };
     const double                       middle[DIG_HYPOTHESIS_NUMBERS] = { 0.0 };

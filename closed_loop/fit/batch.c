@@ -1,6 +1,6 @@
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/batch.h"
 
-#include "closed_loop/fit/whitened_group.h"
+#include "closed_loop/fit/batch_group.h"
 #include "closed_loop/numeric/dense.h"
 
 #include <assert.h>
@@ -17,9 +17,8 @@ static double least_chi2(const double degrees)
     return degrees * pow(fmax(1.0 - spread - sigmas * sqrt(spread), 0.0), 3.0);
 }
 
-static bool are_one(const struct dig_whitened_digs *const     batch,
-                    const struct dig_whitened_digs_dig *const a,
-                    const struct dig_whitened_digs_dig *const b)
+static bool are_one(const struct dig_batch *const batch, const struct dig_batch_dig *const a,
+                    const struct dig_batch_dig *const b)
 {
     const size_t features = batch->group[a->group].features;
     double       apart2   = 0.0;
@@ -29,7 +28,7 @@ static bool are_one(const struct dig_whitened_digs *const     batch,
     return a->group == b->group && 0.5 * apart2 < least_chi2((double)features);
 }
 
-size_t dig_same_bed_count(const struct dig_whitened_digs *const batch, const size_t group)
+size_t dig_same_bed_count(const struct dig_batch *const batch, const size_t group)
 {
     assert(batch != NULL && group < batch->groups);
     size_t beds = 0;
@@ -43,7 +42,7 @@ size_t dig_same_bed_count(const struct dig_whitened_digs *const batch, const siz
     return beds;
 }
 
-void dig_whitened_digs_features(const struct dig_measured *const dig, double feature[DIG_FEATURES])
+void dig_batch_features(const struct dig_measured *const dig, double feature[DIG_FEATURES])
 {
     double curve[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
@@ -54,14 +53,14 @@ void dig_whitened_digs_features(const struct dig_measured *const dig, double fea
     dig_features_of((const double(*)[DIG_CURVE_POINTS])curve, feature);
 }
 
-static size_t group_of(struct dig_whitened_digs *const batch, const size_t trajectory)
+static size_t group_of(struct dig_batch *const batch, const size_t trajectory)
 {
     size_t g = 0;
     while (g < batch->groups && batch->group[g].trajectory != trajectory) {
         g++;
     }
     if (g == batch->groups) {
-        batch->group[g] = (struct dig_whitened_digs_group){ .trajectory = trajectory };
+        batch->group[g] = (struct dig_group){ .trajectory = trajectory };
         batch->groups++;
     }
     return g;
@@ -70,9 +69,8 @@ static size_t group_of(struct dig_whitened_digs *const batch, const size_t traje
 _Static_assert(DIG_FEATURES % DIG_ROWS_AT_ONCE == 0, "no rest");
 
 // whiten[k] adds nothing to y before y[k].
-DIG_VECTORS void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *const group,
-                                          const double feature[DIG_FEATURES],
-                                          double       y[DIG_FEATURES])
+DIG_VECTORS void dig_batch_whiten(const struct dig_group *const group,
+                                  const double feature[DIG_FEATURES], double y[DIG_FEATURES])
 {
     double x[DIG_FEATURES];
     for (size_t k = 0; k < group->features; k++) {
@@ -85,11 +83,11 @@ DIG_VECTORS void dig_whitened_digs_whiten(const struct dig_whitened_digs_group *
     }
 }
 
-void dig_whitened_digs_spread(struct dig_whitened_digs *const batch, const double spread)
+void dig_batch_spread(struct dig_batch *const batch, const double spread)
 {
     assert(batch != NULL && spread > 0.0);
     for (size_t g = 0; g < batch->groups; g++) {
-        struct dig_whitened_digs_group *const group = &batch->group[g];
+        struct dig_group *const group = &batch->group[g];
         for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
             group->amplitude[c] *= spread;
             group->lasting_sigma[c] *= spread;
@@ -106,13 +104,13 @@ void dig_whitened_digs_spread(struct dig_whitened_digs *const batch, const doubl
             batch->dig[i].y[k] /= spread;
         }
     }
-    dig_whitened_digs_summarise(batch);
+    dig_batch_summarise(batch);
 }
 
-void dig_whitened_digs_summarise(struct dig_whitened_digs *const batch)
+void dig_batch_summarise(struct dig_batch *const batch)
 {
     for (size_t g = 0; g < batch->groups; g++) {
-        struct dig_whitened_digs_group *const group = &batch->group[g];
+        struct dig_group *const group = &batch->group[g];
         memset(group->mean, 0, sizeof group->mean);
         group->about = 0.0;
         for (size_t i = 0; i < batch->digs; i++) {
@@ -129,11 +127,11 @@ void dig_whitened_digs_summarise(struct dig_whitened_digs *const batch)
 }
 
 // What the digs' number does not average out.
-static void fill_shared(struct dig_whitened_digs *const batch)
+static void fill_shared(struct dig_batch *const batch)
 {
     for (size_t g = 0; g < batch->groups; g++) {
-        struct dig_whitened_digs_group *const group = &batch->group[g];
-        double                                sigma = 0.0;
+        struct dig_group *const group = &batch->group[g];
+        double                  sigma = 0.0;
         memset(group->added_error, 0, sizeof group->added_error);
         for (size_t i = 0; i < batch->digs; i++) {
             const struct dig_added *const added = &batch->measured[batch->dig[i].measured].added;
@@ -152,11 +150,10 @@ static void fill_shared(struct dig_whitened_digs *const batch)
     }
 }
 
-enum dig_status dig_whitened_digs_make(const struct dig_soil *const    soil,
-                                       const struct dig_scatter *const scatter, const size_t digs,
-                                       const struct dig_measured measured[], const bool take[],
-                                       const double                    place[DIG_AXES],
-                                       struct dig_whitened_digs *const batch)
+enum dig_status dig_batch_make(const struct dig_soil *const    soil,
+                               const struct dig_scatter *const scatter, const size_t digs,
+                               const struct dig_measured measured[], const bool take[],
+                               const double place[DIG_AXES], struct dig_batch *const batch)
 {
     assert(soil != NULL && scatter != NULL && measured != NULL && batch != NULL);
     memset(batch, 0, sizeof *batch);
@@ -169,48 +166,46 @@ enum dig_status dig_whitened_digs_make(const struct dig_soil *const    soil,
         if (!take[i] || !soil->surface->known[t]) {
             continue;
         }
-        struct dig_whitened_digs_dig *const dig = &batch->dig[batch->digs];
-        dig->group                              = group_of(batch, t);
-        dig->measured                           = i;
+        struct dig_batch_dig *const dig = &batch->dig[batch->digs];
+        dig->group                      = group_of(batch, t);
+        dig->measured                   = i;
         batch->group[dig->group].digs++;
-        dig_whitened_digs_features(&measured[i], feature[batch->digs++]);
+        dig_batch_features(&measured[i], feature[batch->digs++]);
     }
     enum dig_status status = batch->digs > 0 ? DIG_OK : DIG_ENOMATCH;
     for (size_t g = 0; g < batch->groups && status == DIG_OK; g++) {
-        status = dig_whitened_group_fill(batch, g, (const double(*)[DIG_FEATURES])feature, place);
+        status = dig_batch_group_fill(batch, g, (const double(*)[DIG_FEATURES])feature, place);
     }
     for (size_t i = 0; i < batch->digs && status == DIG_OK; i++) {
-        dig_whitened_digs_whiten(&batch->group[batch->dig[i].group], feature[i], batch->dig[i].y);
+        dig_batch_whiten(&batch->group[batch->dig[i].group], feature[i], batch->dig[i].y);
     }
     if (status == DIG_OK) {
-        dig_whitened_digs_summarise(batch);
+        dig_batch_summarise(batch);
         fill_shared(batch);
     }
     return status;
 }
 
-double dig_whitened_digs_misfit(const struct dig_whitened_digs *const batch, const double squares)
+double dig_batch_misfit(const struct dig_batch *const batch, const double squares)
 {
     double numbers = 0.0;
     double known   = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
-        const struct dig_whitened_digs_group *const group = &batch->group[g];
-        const double freedom = batch->scatter->freedom[group->trajectory];
+        const struct dig_group *const group   = &batch->group[g];
+        const double                  freedom = batch->scatter->freedom[group->trajectory];
         numbers += (double)(group->features * group->digs);
         known += (double)group->features * (freedom > 0.0 ? freedom : (double)INFINITY);
     }
     return isinf(known) ? squares : (known + numbers) * log1p(squares / known);
 }
 
-double dig_whitened_digs_misfit_of_means(const struct dig_whitened_digs *const batch,
-                                         const double                          squares)
+double dig_batch_misfit_of_means(const struct dig_batch *const batch, const double squares)
 {
-    const double about = dig_whitened_digs_about(batch);
-    return dig_whitened_digs_misfit(batch, squares + about) -
-           dig_whitened_digs_misfit(batch, about);
+    const double about = dig_batch_about(batch);
+    return dig_batch_misfit(batch, squares + about) - dig_batch_misfit(batch, about);
 }
 
-double dig_whitened_digs_about(const struct dig_whitened_digs *const batch)
+double dig_batch_about(const struct dig_batch *const batch)
 {
     double about = 0.0;
     for (size_t g = 0; g < batch->groups; g++) {
@@ -219,8 +214,8 @@ double dig_whitened_digs_about(const struct dig_whitened_digs *const batch)
     return about;
 }
 
-void dig_whitened_digs_leave_out(const struct dig_whitened_digs *const batch, const size_t dig,
-                                 struct dig_whitened_digs *const others)
+void dig_batch_leave_out(const struct dig_batch *const batch, const size_t dig,
+                         struct dig_batch *const others)
 {
     assert(batch != NULL && others != NULL && dig < batch->digs && batch->digs > 1);
     const size_t group = batch->dig[dig].group;
@@ -237,6 +232,6 @@ void dig_whitened_digs_leave_out(const struct dig_whitened_digs *const batch, co
             others->dig[i].group -= others->dig[i].group > group ? 1 : 0;
         }
     }
-    dig_whitened_digs_summarise(others);
+    dig_batch_summarise(others);
     fill_shared(others);
 }

@@ -1,4 +1,4 @@
-#include "closed_loop/fit/whitened_digs.h"
+#include "closed_loop/fit/batch.h"
 
 #include "closed_loop/fit/hypothesis.h"
 
@@ -10,8 +10,8 @@ enum { DIGS = 60 };
 
 static const struct dig_gravel gravel = { { 0.6, 0.55, 2500 } };
 
-static struct dig_measured      measured[DIGS];
-static struct dig_whitened_digs batch;
+static struct dig_measured measured[DIGS];
+static struct dig_batch    batch;
 
 static void make_batch(void)
 {
@@ -26,7 +26,7 @@ TEST(digs_of_one_gravel_scatter_by_one)
     make_batch();
     assert_int_equal(batch.groups, 2);
     for (size_t g = 0; g < batch.groups; g++) {
-        const struct dig_whitened_digs_group *const group = &batch.group[g];
+        const struct dig_group *const group = &batch.group[g];
         assert_int_equal(group->digs, DIGS / 2);
         assert_int_equal(group->features, DIG_FEATURES);
         const double freedom = (double)(group->features * (group->digs - 1));
@@ -44,7 +44,7 @@ static double scatter_with_noise(const double share, const double memory_s, cons
         dig_add_noise(share, memory_s, &seed, &measured[i]);
     }
     batch_digs(DIGS, measured, &gravel, &batch);
-    const struct dig_whitened_digs_group *const group = &batch.group[g];
+    const struct dig_group *const group = &batch.group[g];
     const double scatter = group->about / (double)(group->features * (group->digs - 1));
     print_message("%s: %.2f\n", world.set->trajectory[group->trajectory].name, scatter);
     return scatter;
@@ -72,7 +72,7 @@ TEST(digs_with_noise_that_lasts_scatter_by_one)
 TEST(what_the_machine_adds_is_taken_off)
 {
     make_batch();
-    const struct dig_whitened_digs plain = batch;
+    const struct dig_batch plain = batch;
     for (size_t i = 0; i < DIGS; i++) {
         for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
             measured[i].value[0][k] += 1e-4;
@@ -125,9 +125,9 @@ TEST(digs_and_models_shrink_alike)
     }
     for (int after = 0; after < 2; after++) {
         if (after) {
-            dig_whitened_digs_spread(&batch, 1.5);
+            dig_batch_spread(&batch, 1.5);
         }
-        dig_whitened_digs_whiten(&batch.group[1], feature, model[after]);
+        dig_batch_whiten(&batch.group[1], feature, model[after]);
         memcpy(y[after], batch.group[1].mean, sizeof y[after]);
     }
     for (size_t f = 0; f < DIG_FEATURES; f++) {
@@ -150,13 +150,11 @@ TEST(only_what_all_digs_have_is_compared)
     assert_int_equal(batch.group[0].features, 2 * 7);
     assert_int_equal(batch.group[1].features, DIG_FEATURES);
     measured[0].last = 0.1;
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, &batch),
-        DIG_ENOMATCH);
+    assert_int_equal(dig_batch_make(soil, world.scatter, DIGS, measured, take, NULL, &batch),
+                     DIG_ENOMATCH);
     memset(take, false, sizeof take);
-    assert_int_equal(
-        dig_whitened_digs_make(soil, world.scatter, DIGS, measured, take, NULL, &batch),
-        DIG_ENOMATCH);
+    assert_int_equal(dig_batch_make(soil, world.scatter, DIGS, measured, take, NULL, &batch),
+                     DIG_ENOMATCH);
 }
 
 // Against the integral itself: squares of so many normal numbers whose variance is n / chi-squared
@@ -190,14 +188,13 @@ TEST(a_size_known_from_few_beds_is_integrated_out)
     const double numbers = 60.0 * DIG_FEATURES;
     const double known   = 2.0 * 3.0 * DIG_FEATURES;
     for (double squares = 200.0; squares < 20000.0; squares *= 3.0) {
-        assert_close(dig_whitened_digs_misfit(&batch, squares) -
-                         dig_whitened_digs_misfit(&batch, 100.0),
+        assert_close(dig_batch_misfit(&batch, squares) - dig_batch_misfit(&batch, 100.0),
                      integrated(known, numbers, squares) - integrated(known, numbers, 100.0), 1e-6);
     }
     for (size_t t = 0; t < DIG_TRAJECTORY_MAX; t++) {
         scatter.freedom[t] = 0.0;
     }
-    assert_close(dig_whitened_digs_misfit(&batch, 123.0), 123.0, 0.0);
+    assert_close(dig_batch_misfit(&batch, 123.0), 123.0, 0.0);
 }
 
 TESTS_WITH(world_setup, world_teardown)

@@ -1,4 +1,4 @@
-#include "closed_loop/fit/whitened_group.h"
+#include "closed_loop/fit/batch_group.h"
 
 #include "closed_loop/model/approach_change.h"
 #include "closed_loop/model/soil_fit.h"
@@ -10,8 +10,7 @@
 
 enum { LEAST_FEATURES = DIG_FEATURE_BINS / 2 };
 
-const struct dig_measured *dig_whitened_digs_first(const struct dig_whitened_digs *const batch,
-                                                   const size_t                          group)
+const struct dig_measured *dig_batch_first(const struct dig_batch *const batch, const size_t group)
 {
     assert(batch != NULL && group < batch->groups);
     size_t i = 0;
@@ -22,8 +21,7 @@ const struct dig_measured *dig_whitened_digs_first(const struct dig_whitened_dig
 }
 
 // The features that all digs of a group have.
-static void intersect(const struct dig_whitened_digs *const batch, const size_t g,
-                      bool mask[DIG_FEATURES])
+static void intersect(const struct dig_batch *const batch, const size_t g, bool mask[DIG_FEATURES])
 {
     for (size_t f = 0; f < DIG_FEATURES; f++) {
         mask[f] = true;
@@ -41,8 +39,7 @@ static void intersect(const struct dig_whitened_digs *const batch, const size_t 
 }
 
 // The variance of the sensors in a bin, where their error does not average down.
-static double sensor_variance(const struct dig_whitened_digs *const batch, const size_t g,
-                              const size_t f)
+static double sensor_variance(const struct dig_batch *const batch, const size_t g, const size_t f)
 {
     double               sum    = 0.0;
     double               n      = 0.0;
@@ -63,12 +60,12 @@ static double sensor_variance(const struct dig_whitened_digs *const batch, const
 
 // The size of the group's mean dig times the root of the scatter's factor, which is returned, at
 // the gravel it is thought to be of.
-static double measure_size(const struct dig_whitened_digs *const batch, const size_t g,
+static double measure_size(const struct dig_batch *const batch, const size_t g,
                            const double feature[][DIG_FEATURES], const bool mask[DIG_FEATURES],
                            const double place[DIG_AXES], double amplitude[DIG_FORCE_CHANNELS])
 {
-    const struct dig_whitened_digs_group *const group              = &batch->group[g];
-    double                                      mean[DIG_FEATURES] = { 0.0 };
+    const struct dig_group *const group              = &batch->group[g];
+    double                        mean[DIG_FEATURES] = { 0.0 };
     for (size_t i = 0; i < batch->digs; i++) {
         for (size_t f = 0; batch->dig[i].group == g && f < DIG_FEATURES; f++) {
             mean[f] += feature[i][f] / (double)group->digs;
@@ -94,7 +91,7 @@ static double measure_size(const struct dig_whitened_digs *const batch, const si
 
 // What a dig of the group does where its ground lies elsewhere, 1 sigma over the size; zeros where
 // that is known. Digs of a trajectory scatter alike, so that the most open of them counts for all.
-static enum dig_status open_depth(const struct dig_whitened_digs *const batch, const size_t g,
+static enum dig_status open_depth(const struct dig_batch *const batch, const size_t g,
                                   const double place[DIG_AXES], double change[DIG_FEATURES])
 {
     double share = 0.0;
@@ -119,11 +116,11 @@ static enum dig_status open_depth(const struct dig_whitened_digs *const batch, c
 }
 
 // What lasts of the sensors' noise, as digs of a trajectory have it on average.
-static void fill_lasting(const struct dig_whitened_digs *const batch, const size_t g,
-                         struct dig_whitened_digs_group *const group)
+static void fill_lasting(const struct dig_batch *const batch, const size_t g,
+                         struct dig_group *const group)
 {
-    const double memory_s                 = dig_whitened_digs_first(batch, g)->lasting.memory_s;
-    const struct dig_curve_set *const set = batch->soil->surface->set;
+    const double                      memory_s = dig_batch_first(batch, g)->lasting.memory_s;
+    const struct dig_curve_set *const set      = batch->soil->surface->set;
     memset(group->lasting, 0, sizeof group->lasting);
     memset(group->lasting_sigma, 0, sizeof group->lasting_sigma);
     for (size_t i = 0; i < batch->digs; i++) {
@@ -144,7 +141,7 @@ static void fill_lasting(const struct dig_whitened_digs *const batch, const size
 }
 
 // The covariance of two features by that, over the group's amplitude.
-static double lasting_covariance(const struct dig_whitened_digs_group *const group, const size_t a,
+static double lasting_covariance(const struct dig_group *const group, const size_t a,
                                  const size_t b)
 {
     const size_t c     = a / DIG_FEATURE_BINS;
@@ -155,13 +152,13 @@ static double lasting_covariance(const struct dig_whitened_digs_group *const gro
                : 0.0;
 }
 
-enum dig_status dig_whitened_group_fill(struct dig_whitened_digs *const batch, const size_t g,
-                                        const double feature[][DIG_FEATURES],
-                                        const double place[DIG_AXES])
+enum dig_status dig_batch_group_fill(struct dig_batch *const batch, const size_t g,
+                                     const double feature[][DIG_FEATURES],
+                                     const double place[DIG_AXES])
 {
     assert(batch != NULL && g < batch->groups && feature != NULL);
-    struct dig_whitened_digs_group *const group = &batch->group[g];
-    bool                                  mask[DIG_FEATURES];
+    struct dig_group *const group = &batch->group[g];
+    bool                    mask[DIG_FEATURES];
     intersect(batch, g, mask);
     const double root = measure_size(batch, g, feature, mask, place, group->amplitude);
     double       deeper[DIG_FEATURES];
