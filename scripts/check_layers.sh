@@ -56,7 +56,7 @@ closed_loop/machine_digs observe_machine recording_faults | machine_dig
 closed_loop/model      | approach_change candidate response_surface scatter soil soil_fit
 closed_loop/fit        | batch hypothesis posterior steps
 closed_loop/air        | machine_air
-closed_loop/machine    machine_side | machine_fit machine_lines machine_noise
+closed_loop/machine    machine_side | machine_fit machine_noise
 closed_loop/check      machine_check
 closed_loop/search     | cross_validation search search_work unlisted
 closed_loop/accuracy   score | effect_size judge

@@ -2,7 +2,6 @@
 
 #include "closed_loop/check/drive_misfit.h"
 #include "closed_loop/machine/machine_fit.h"
-#include "closed_loop/machine/machine_lines.h"
 #include "closed_loop/machine/machine_noise.h"
 #include "core/units.h"
 

@@ -2,7 +2,7 @@
 // for each joint the zero of its angle, factor and offset of its pressures, and the weight of its
 // link; for all the delay of the pressures.
 //
-// All columns of the equations (machine_lines.h) always have a prior as wide as their tolerance;
+// All columns of the equations (machine_fit.h) always have a prior as wide as their tolerance;
 // one that is named a cause has a wide one. Causes join while the evidence grows by more than
 // log(causes / false alarm), as effects do (machine_fit.h).
 

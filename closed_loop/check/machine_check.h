@@ -3,7 +3,7 @@
 // Without soil the balance of every joint is zero. First the recording is read in the way that
 // leaves least of it (machine_reading.h): signs, large zeros, which cylinder is which, head and
 // rod, unit. Then the equations of free air (machine_air.h) are fitted with everything that a file
-// or a sensor may have wrong (machine_lines.h, machine_fit.h) within its tolerance, and causes join
+// or a sensor may have wrong (machine_fit.h) within its tolerance, and causes join
 // with a wide prior, one at a time, while each multiplies the evidence by more than causes / false
 // alarm.
 //

@@ -1,4 +1,4 @@
-#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_fit.h"
 
 #include "estimator/effects/effect.h"
 

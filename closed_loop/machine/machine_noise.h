@@ -7,7 +7,7 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_NOISE_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_NOISE_H
 
-#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_fit.h"
 
 /// Zeroed: none.
 struct dig_machine_noise {

@@ -273,27 +273,6 @@ static void write_unlike(const struct dig_machine_search *const s,
     };
 }
 
-// What is left without any effect, over what rows scatter by.
-static void write_residuals(const struct dig_machine_search *const s,
-                            struct dig_machine_finding *const      finding)
-{
-    double count[DIG_MEASURED_MAX] = { 0.0 };
-    double sum[DIG_MEASURED_MAX]   = { 0.0 };
-    double all                     = 0.0;
-    for (size_t r = 0; r < s->air.rows; r++) {
-        const struct dig_air_row *const row = &s->air.row[r];
-        const size_t                    d   = s->air.segment[row->segment].dig;
-        count[d] += 1.0;
-        sum[d] += row->alone * row->alone;
-        all += row->alone * row->alone;
-    }
-    finding->residual_air = sqrt(s->rest2_none / all);
-    for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
-        finding->residual_air_of[d] =
-            count[d] > 0.0 ? s->none_of[d] * sqrt(count[d] / sum[d]) : (double)NAN;
-    }
-}
-
 static void write_finding(struct dig_machine_search *const s, const uint64_t seed,
                           double                            own_payload_kg[DIG_MEASURED_MAX],
                           struct dig_machine_finding *const finding)
@@ -304,8 +283,10 @@ static void write_finding(struct dig_machine_search *const s, const uint64_t see
     if (!unclear) {
         doubt_file(s);
     }
-    *finding = (struct dig_machine_finding){ .unexplained = unclear, .follows = s->drift.follows };
-    write_residuals(s, finding);
+    *finding = (struct dig_machine_finding){ .unexplained  = unclear,
+                                             .follows      = s->drift.follows,
+                                             .residual_air = s->residual };
+    memcpy(finding->residual_air_of, s->residual_of, sizeof s->residual_of);
     finding->significant = s->set != 0 || unclear || s->unlike.is;
     bootstrap(s, seed, inclusion);
     write_candidates(s, inclusion, finding);

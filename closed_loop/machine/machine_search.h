@@ -23,15 +23,15 @@ struct dig_machine_search {
     struct dig_slew_rows     all, kept; // rows of the air: all; and as the search had come to them
     struct dig_machine_noise noise;
     unsigned                 set;
-    double                   noise2;     // variance that rows may have without being unclear
-    double                   level;      // false alarms
-    double                   least;      // log evidence that an effect must bring
-    double                   rest2_none; // without any effect, not linear
-    double                   rest2; // with the set, not linear, rows as far as they are trusted
-    double                   slow;  // of it, in the means of segments: chi-squared
-    double                   none_of[DIG_MEASURED_MAX]; // rms of rest dig by dig without any effect
-    struct dig_machine_drift drift;                     // that explains as much as the set, or none
-    struct dig_machine_unlike unlike;                   // what of the file does, or none
+    double                   noise2; // variance that rows may have without being unclear
+    double                   level;  // false alarms
+    double                   least;  // log evidence that an effect must bring
+    // Left without any effect over what is expected, rms, of all air and dig by dig; NaN: no air.
+    double                    residual, residual_of[DIG_MEASURED_MAX];
+    double                    rest2;  // with the set, not linear, rows as far as they are trusted
+    double                    slow;   // of it, in the means of segments: chi-squared
+    struct dig_machine_drift  drift;  // that explains as much as the set, or none
+    struct dig_machine_unlike unlike; // what of the file does, or none
 };
 
 struct dig_machine_side {

@@ -77,20 +77,27 @@ static void settle(struct dig_machine_search *const s)
     s->slow = dig_lines_judge(&s->fit.lines);
 }
 
-// What is left of the rows of each dig where the lines stand, for a report.
-static void rest_by_dig(struct dig_machine_search *const s)
+// What is left of the rows without any effect, and what they scatter by, dig by dig: for a report.
+static void write_residuals(struct dig_machine_search *const s)
 {
     double *const rest                    = s->fit.lines.work;
     double        count[DIG_MEASURED_MAX] = { 0.0 };
     double        sum[DIG_MEASURED_MAX]   = { 0.0 };
-    dig_lines_rest(&s->fit.lines, s->fit.lines.at, rest);
+    double        alone[DIG_MEASURED_MAX] = { 0.0 };
+    double        all                     = 0.0;
+    s->rest2                              = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
     for (size_t r = 0; r < s->air.rows; r++) {
-        const size_t d = s->air.segment[s->air.row[r].segment].dig;
+        const struct dig_air_row *const row = &s->air.row[r];
+        const size_t                    d   = s->air.segment[row->segment].dig;
         sum[d] += pow(s->fit.lines.trust[r] * rest[r], 2.0);
         count[d] += 1.0;
+        alone[d] += row->alone * row->alone;
+        all += row->alone * row->alone;
     }
+    s->residual = sqrt(s->rest2 / all);
     for (size_t d = 0; d < DIG_MEASURED_MAX; d++) {
-        s->none_of[d] = count[d] > 0.0 ? sqrt(sum[d] / count[d]) : (double)NAN;
+        s->residual_of[d] =
+            count[d] > 0.0 ? sqrt(sum[d] / count[d]) * sqrt(count[d] / alone[d]) : (double)NAN;
     }
 }
 
@@ -100,20 +107,11 @@ static double common_payload(const struct dig_machine_search *const s)
     return s->fit.lines.at[dig_lines_first(&s->fit.lines, DIG_EFFECT_PAYLOAD)];
 }
 
-static int effects_of(const struct dig_machine_search *const s)
-{
-    int effects = 0;
-    for (unsigned e = 0; e < DIG_MACHINE_EFFECTS; e++) {
-        effects += ((s->set >> e) & 1U) != 0 ? 1 : 0;
-    }
-    return effects;
-}
-
 // More effects than one trusts to be there at once share out the form of a cause that has none of
 // theirs; so does a payload that weighs less than nothing.
 static bool is_makeshift(const struct dig_machine_search *const s)
 {
-    return effects_of(s) > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
+    return __builtin_popcount(s->set) > DIG_MACHINE_AT_ONCE || common_payload(s) < 0.0;
 }
 
 bool dig_machine_is_unclear(const struct dig_machine_search *const s)
@@ -211,7 +209,8 @@ static double merit_of(const struct dig_machine_search *const s)
         trust += log(s->fit.lines.trust[r]);
     }
     return dig_fit_evidence(&s->fit, s->set) + s->fit.log_none - 0.5 * s->fit.rest2 / s->fit.s2 -
-           0.5 * (double)s->air.rows * log(s->fit.s2) + trust - s->least * effects_of(s);
+           0.5 * (double)s->air.rows * log(s->fit.s2) + trust -
+           s->least * __builtin_popcount(s->set);
 }
 
 static void reach(struct dig_machine_search *const s, struct reached *const reached)
@@ -242,9 +241,7 @@ static void try_with(struct dig_machine_search *const s, const unsigned first,
 static void select_effects(struct dig_machine_search *const s)
 {
     settle(s);
-    rest_by_dig(s);
-    s->rest2_none        = dig_lines_rest2(&s->fit.lines, s->fit.lines.at);
-    s->rest2             = s->rest2_none;
+    write_residuals(s);
     const unsigned first = dig_fit_select(&s->fit, s->least, 0);
     // Where one leads, the others may not be needed: they explain what its slope there does not.
     // But alone it may take what is another's for its own, and then stays there.

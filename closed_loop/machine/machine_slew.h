@@ -6,7 +6,7 @@
 #ifndef DIG_CLOSED_LOOP_MACHINE_MACHINE_SLEW_H
 #define DIG_CLOSED_LOOP_MACHINE_MACHINE_SLEW_H
 
-#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_fit.h"
 
 #include <stdbool.h>
 

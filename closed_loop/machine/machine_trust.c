@@ -1,7 +1,7 @@
 // Trust of each row of free air: where effects explain much of it, their form may be wrong, and a
 // rod that stands may be held by friction.
 
-#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_fit.h"
 #include "estimator/effects/effect.h"
 
 #include <assert.h>

@@ -1,6 +1,6 @@
 // Tests for closed_loop/machine/machine_side.c and its parts.
 
-#include "closed_loop/machine/machine_lines.h"
+#include "closed_loop/machine/machine_fit.h"
 #include "tests/closed_loop/machine_campaign.h"
 
 TEST(a_machine_as_its_file_says_raises_no_alarm)
