@@ -99,7 +99,8 @@ DIG_MUST_CHECK enum dig_status dig_machine_side_trace(struct dig_machine_side *s
                                                       struct dig_machine_finding *finding);
 
 /// Leaves in measured[].lasting what noise that free air shows to last (machine_noise.h) does to
-/// each dig; nothing where it shows none. DIG_ENOMEM. Some tenths of a second.
+/// each dig; nothing where it shows none. The trace goes on with the air as it is left then.
+/// DIG_ENOMEM. Some tenths of a second.
 DIG_MUST_CHECK enum dig_status dig_machine_side_tell_noise(struct dig_machine_side *side,
                                                            struct dig_measured      measured[]);
 

@@ -201,6 +201,23 @@ TEST(free_air_tells_how_large_noise_is_in_a_dig_and_how_long_it_lasts)
     }
 }
 
+TEST(air_is_traced_alike_whether_its_noise_was_asked_for_before_or_not)
+{
+    const struct fault                hunting = { .hunting_Pa = 2e5, .hunting_s = 0.2 };
+    struct campaign *const            c       = trace(&hunting, 122);
+    struct dig_machine_finding *const again   = calloc(1, sizeof *again);
+    assert_non_null(again);
+    assert_int_equal(dig_machine_side_tell_noise(c->side, c->measured), DIG_OK);
+    assert_int_equal(dig_machine_side_trace(c->side, 0.01, 122, again), DIG_OK);
+    assert_false(again->no_air);
+    assert_close(again->residual_air, c->finding.residual_air, 0.0);
+    assert_close(again->p_complete, c->finding.p_complete, 0.0);
+    assert_memory_equal(again->none.value, c->finding.none.value, sizeof again->none.value);
+    assert_close(again->candidate[0].log_evidence, c->finding.candidate[0].log_evidence, 0.0);
+    free(again);
+    end(c);
+}
+
 // Missing is not zero: neither noise nor an effect is made of it.
 TEST(readings_that_do_not_arrive_raise_no_alarm_and_hide_no_seal)
 {
