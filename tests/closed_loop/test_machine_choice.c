@@ -7,31 +7,42 @@
 
 static const char *const table = "tables/reference_rig.sqlite";
 
-static void *load(void)
-{
-    struct dig_curve_set *loaded = NULL;
-    struct dig_error      error  = { "" };
-    assert_ok(dig_table_load(table, &loaded, &error), error);
-    return loaded;
-}
+// By a machine that is as its file says.
+static struct dig_trace oracle;
 
-static struct dig_trace traced(const struct fault *const fault, const uint64_t seed)
+static struct dig_trace traced(const struct fault *const fault)
 {
-    struct dig_curve_set *const made     = set;
-    struct dig_trace_settings   settings = dig_trace_settings_default();
-    struct dig_error            error    = { "" };
-    struct dig_trace            result;
-    struct campaign            *c;
-    set                 = load();
-    settings.bootstraps = test_is_quick() ? 40 : settings.bootstraps;
-    c                   = trace(fault, seed);
+    struct dig_trace_settings settings = dig_trace_settings_default();
+    struct dig_error          error    = { "" };
+    struct dig_trace          result;
+    settings.bootstraps      = test_is_quick() ? 40 : settings.bootstraps;
+    struct campaign *const c = trace(fault, 3);
     assert_ok(
         dig_trace_run(set, table, NULL, &settings, c->side, DIGS, c->measured, &result, &error),
         error);
     end(c);
-    dig_curve_set_destroy(set);
-    set = made;
     return result;
+}
+
+static int build_on_table(void **state)
+{
+    const struct fault none  = { .gain = 0.0 };
+    struct dig_error   error = { "" };
+    if (build(state) != 0) {
+        return -1;
+    }
+    made_table_destroy(set);
+    assert_ok(dig_table_load(table, &set, &error), error);
+    oracle = traced(&none);
+    return 0;
+}
+
+static int end_oracle(void **state)
+{
+    dig_trace_finish(&oracle);
+    dig_curve_set_destroy(set);
+    set = NULL;
+    return tear_down(state);
 }
 
 static const struct dig_model_parameter *parameter(const struct dig_model_effect *const effect,
@@ -50,7 +61,7 @@ static const struct dig_model_parameter *parameter(const struct dig_model_effect
 TEST(a_gain_that_free_air_leaves_open_is_told_by_the_digs)
 {
     const struct fault fault  = { .gain = 0.08 };
-    struct dig_trace   result = traced(&fault, 3);
+    struct dig_trace   result = traced(&fault);
     assert_int_equal(result.effects, 1);
     assert_int_equal(result.effect[0].effect, DIG_EFFECT_PRESSURE_OFFSET);
     const struct dig_model_parameter *const gain = parameter(&result.effect[0], "bucket_head_gain");
@@ -58,11 +69,8 @@ TEST(a_gain_that_free_air_leaves_open_is_told_by_the_digs)
                   gain->low, gain->high, result.before.value, result.after.value);
     assert_true(gain->low <= 0.08 && 0.08 <= gain->high && gain->low > 0.0);
     // As near as where the sensor reads what is there.
-    const struct fault none   = { .gain = 0.0 };
-    struct dig_trace   oracle = traced(&none, 3);
     assert_true(result.applied && result.after.value < 0.9 * result.before.value);
     assert_true(result.after.value < 1.15 * oracle.after.value);
-    dig_trace_finish(&oracle);
     dig_trace_finish(&result);
 }
 
@@ -70,9 +78,7 @@ TEST(a_gain_that_free_air_leaves_open_is_told_by_the_digs)
 TEST(what_free_air_leaves_open_of_an_effect_without_a_name_is_open_in_the_gravel)
 {
     const struct fault fault  = { .boom_gain = 0.06 };
-    const struct fault none   = { .boom_gain = 0.0 };
-    struct dig_trace   result = traced(&fault, 5);
-    struct dig_trace   oracle = traced(&none, 5);
+    struct dig_trace   result = traced(&fault);
     assert_int_equal(result.effects, 0);
     for (size_t a = 0; a < DIG_AXES; a++) {
         const double low = result.low.value[a], high = result.high.value[a];
@@ -81,7 +87,6 @@ TEST(what_free_air_leaves_open_of_an_effect_without_a_name_is_open_in_the_gravel
                       oracle.low.value[a], oracle.high.value[a]);
         assert_true(low <= oracle.gravel.value[a] && oracle.gravel.value[a] <= high);
     }
-    dig_trace_finish(&oracle);
     dig_trace_finish(&result);
 }
 
@@ -89,9 +94,7 @@ TEST(what_free_air_leaves_open_of_an_effect_without_a_name_is_open_in_the_gravel
 TEST(a_machine_that_leans_says_so_and_leaves_the_gravel)
 {
     const struct fault leans  = { .pitched_rad = 3.0 * DIG_RAD_PER_DEG };
-    const struct fault none   = { .boom_gain = 0.0 };
-    struct dig_trace   result = traced(&leans, 6);
-    struct dig_trace   oracle = traced(&none, 6);
+    struct dig_trace   result = traced(&leans);
     print_message("%s; error %.3f to %.3f, of a level one %.3f\n", result.advice,
                   result.before.value, result.after.value, oracle.after.value);
     assert_int_equal(result.effects, 1);
@@ -103,17 +106,13 @@ TEST(a_machine_that_leans_says_so_and_leaves_the_gravel)
         assert_true(result.low.value[a] <= oracle.gravel.value[a] &&
                     oracle.gravel.value[a] <= result.high.value[a]);
     }
-    dig_trace_finish(&oracle);
     dig_trace_finish(&result);
 }
 
 TEST(a_machine_as_its_file_says_is_left_alone)
 {
-    const struct fault none   = { .gain = 0.0 };
-    struct dig_trace   result = traced(&none, 4);
-    assert_int_equal(result.effects, 0);
-    assert_false(result.significant);
-    dig_trace_finish(&result);
+    assert_int_equal(oracle.effects, 0);
+    assert_false(oracle.significant);
 }
 
-TESTS_WITH(build, tear_down)
+TESTS_WITH(build_on_table, end_oracle)

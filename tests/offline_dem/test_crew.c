@@ -93,6 +93,7 @@ TEST(a_large_bed_moves_alike_on_any_number_of_threads)
 // The crew shares the copies to and from a device.
 TEST(a_bed_on_a_device_moves_alike_on_any_number_of_threads)
 {
+    const size_t     steps    = test_is_quick() ? 2 : 10;
     struct dig_world world[2] = { make_bar(), make_bar() };
     for (size_t k = 0; k < 2; k++) {
         world[k].wall[0].offset_m = -0.99 * GRAIN_m; // where it throws no grain out of its margin
@@ -100,9 +101,9 @@ TEST(a_bed_on_a_device_moves_alike_on_any_number_of_threads)
             assert_int_equal(dig_crew_create(3, &world[k].crew), DIG_OK);
         }
         assert_int_equal(dem_host_take_over(&world[k], NULL), DIG_OK);
-        dem_run(&world[k], 10);
+        dem_run(&world[k], steps);
         dig_world_mark_stale(&world[k]);
-        dem_run(&world[k], 10);
+        dem_run(&world[k], steps);
         assert_int_equal(dig_world_sync(&world[k]), DIG_OK);
     }
     assert_true(world[0].pair[0].n > MANY / 2 && world[0].surface[0].n > ACROSS);
