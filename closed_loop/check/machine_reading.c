@@ -131,27 +131,32 @@ static void pick(const struct dig_air *const air, const bool degrees, struct sea
 
 typedef double costs[DIG_JOINTS][DIG_JOINTS][ANSWERS]; // of a joint by the columns of another
 
-// What an answer of drive j costs where a factor is common to all, its chambers in the columns of
-// another drive; a joint that hardly moves is read as its columns say.
-static double cost_of(const struct search *const s, costs cost, const size_t j,
-                      const enum dig_joint drive, const size_t answer, const size_t common)
+// What an answer of drive j costs where a factor is common to all; a joint that hardly moves is
+// read as its columns say.
+static double cost_of(const struct search *const s, const size_t j, const double misfit,
+                      const size_t answer, const size_t common)
 {
     const bool   asked = s->moves[j] || answer == common;
     const double more  = (answer >= FACTORS ? each_change : 0.0) +
                         (answer % FACTORS != common ? 2.0 * each_change : 0.0);
-    return asked ? cost[j][drive][answer] + more : (double)INFINITY;
+    return asked ? misfit + more : (double)INFINITY;
 }
 
-static size_t best_answer(const struct search *const s, costs cost, const size_t j,
-                          const enum dig_joint drive, const size_t common)
+// The answers of a joint by the columns of one drive, where a factor is common to all.
+struct priced {
+    double cost[ANSWERS];
+    size_t best;
+};
+
+static struct priced price(const struct search *const s, const size_t j,
+                           const double misfit[ANSWERS], const size_t common)
 {
-    size_t best = 0;
-    for (size_t a = 1; a < ANSWERS; a++) {
-        best = cost_of(s, cost, j, drive, a, common) < cost_of(s, cost, j, drive, best, common)
-                   ? a
-                   : best;
+    struct priced priced = { .best = 0 };
+    for (size_t a = 0; a < ANSWERS; a++) {
+        priced.cost[a] = cost_of(s, j, misfit[a], a, common);
+        priced.best    = priced.cost[a] < priced.cost[priced.best] ? a : priced.best;
     }
-    return best;
+    return priced;
 }
 
 static void lower(double *const least, const double cost)
@@ -184,19 +189,22 @@ static void keep(struct search *const s, struct dig_reading reading,
 // One order of the cylinders and one common factor: the best of every drive, and then one other
 // answer at a time.
 static void try_order(struct search *const s, const struct dig_reading *const reading,
-                      const double before, costs cost, const size_t common)
+                      const double before, struct priced priced[DIG_JOINTS][DIG_JOINTS])
 {
     size_t best[DIG_JOINTS];
     double sum = before;
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        best[j] = best_answer(s, cost, j, reading->drive[j], common);
-        sum += cost_of(s, cost, j, reading->drive[j], best[j], common);
+        const struct priced *const of = &priced[j][reading->drive[j]];
+
+        best[j] = of->best;
+        sum += of->cost[of->best];
     }
     keep(s, *reading, best, sum);
     for (size_t j = 0; j < DIG_JOINTS; j++) {
-        const double others = sum - cost_of(s, cost, j, reading->drive[j], best[j], common);
+        const struct priced *const of     = &priced[j][reading->drive[j]];
+        const double               others = sum - of->cost[of->best];
         for (size_t a = 0; a < ANSWERS; a++) {
-            const double with = others + cost_of(s, cost, j, reading->drive[j], a, common);
+            const double with = others + of->cost[a];
             lower(&s->least[DIG_READING_SWAPPED][j][a / FACTORS], with);
             lower(&s->least[DIG_READING_FACTOR][j][a % FACTORS], with);
         }
@@ -208,12 +216,18 @@ static void try_order(struct search *const s, const struct dig_reading *const re
 static void try_pressures(struct search *const s, struct dig_reading reading, const double before,
                           costs cost)
 {
+    struct priced priced[DIG_JOINTS][DIG_JOINTS]; // of a joint by the columns of another
     for (size_t common = 0; common < FACTORS; common++) {
+        for (size_t j = 0; j < DIG_JOINTS; j++) {
+            for (size_t drive = 0; drive < DIG_JOINTS; drive++) {
+                priced[j][drive] = price(s, j, cost[j][drive], common);
+            }
+        }
         for (size_t o = 0; o < ORDERS; o++) {
             memcpy(reading.drive, orders[o], sizeof reading.drive);
             try_order(s, &reading,
-                      before + (common > 0 ? each_change : 0.0) + (o > 0 ? each_change : 0.0), cost,
-                      common);
+                      before + (common > 0 ? each_change : 0.0) + (o > 0 ? each_change : 0.0),
+                      priced);
         }
     }
 }
