@@ -5,6 +5,7 @@
 
 #include "core/approach.h"
 #include "core/curve.h"
+#include "core/machine.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -15,6 +16,10 @@ enum dig_ending {
     DIG_ENDING_WHOLE,  // dug to the end of its trajectory
     DIG_ENDING_ABORTED // the bucket left its trajectory before its end
 };
+
+/// Frictions of a dig that no file tells, a number each for the whole of it: of each drive while
+/// its rod moves, and then of each while it stands.
+#define DIG_RUBS (2 * DIG_JOINTS)
 
 /// One dig on the table's grid of progress, rig scale.
 struct dig_observation {
@@ -33,6 +38,10 @@ struct dig_observation {
     bool   forces;                      // Fx and Fz were measured over the same range
     double force_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
     double force_sigma_N[DIG_FORCE_CHANNELS - 1][DIG_CURVE_POINTS];
+
+    // Of the sigmas, what 1 sigma of each friction adds to every channel, with its sign. One that
+    // was saved to a file has none: there friction is a part of the noise.
+    float rubs[DIG_RUBS][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
 
     enum dig_ending ending; // of a recording of forces: OPEN
 };

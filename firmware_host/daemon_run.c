@@ -9,7 +9,7 @@
 #include <signal.h>
 #include <time.h>
 
-#define STACK_BYTES ((size_t)1024 * 1024) // the matcher needs a third of it
+#define STACK_BYTES ((size_t)2 * 1024 * 1024) // the matcher needs less than half of it
 #define LINE        512
 
 // The input's and the publisher's threads stand a little below the tick: a sample is of use only

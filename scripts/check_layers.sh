@@ -37,7 +37,7 @@ estimator/track        frame inertia phase recorded_dig route settings track win
 estimator/approach     approach_error approach_fit approach_route approach_slots approached approaches
                        approach_response interpolate live_recording observe_dig | laid
 estimator/effects      effect template
-estimator/match        depth match pool | entry_scatter
+estimator/match        depth match pool rubbed | entry_scatter
 estimator/predict      forecast peak_energy | predict prediction
 tables/schema          | canonical_scene schema seal
 tables                 derive export listed load merge queue scene store

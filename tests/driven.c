@@ -151,7 +151,8 @@ static void look_at_shadow(struct driven *const b, const double progress)
     const struct dig_estimator_settings settings = dig_estimator_settings_default();
     struct dig_recorded_dig *const      scratch  = calloc(1, sizeof *scratch);
     struct dig_observation *const       early    = &b->early[b->earlies++];
-    if (dig_live_recording_observe(b->set, &settings, NULL, b->live, scratch, early) != DIG_OK) {
+    if (dig_live_recording_observe(b->set, &settings, NULL, NULL, b->live, scratch, early) !=
+        DIG_OK) {
         early->trajectory = -1;
     }
     free(scratch);

@@ -2,6 +2,7 @@
 
 #include "core/linkage.h"
 #include "estimator/wrench/correction.h"
+#include "estimator/wrench/cylinder.h"
 #include "estimator/wrench/dynamics.h"
 #include "estimator/wrench/statics.h"
 
@@ -17,16 +18,7 @@ static const double offset_Pa  = 2e6;
 static const double load_share = 0.25;
 static const double most_share = 0.5;
 
-// A seal rubs with a hundredth of what its cylinder can push.
-static const double seal_share = 0.01;
-
 static const double beyond_rad = 3.0 * DIG_RAD_PER_DEG; // of a joint's range
-
-double dig_drive_seal_N(const struct dig_cylinder *const cylinder)
-{
-    assert(cylinder != NULL);
-    return seal_share * cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
-}
 
 void dig_drive_loads(const struct dig_machine *const machine,
                      const struct dig_reading *const reading, const size_t n,
@@ -110,7 +102,7 @@ static double misfit(const struct dig_cylinder *const cylinder, const struct sum
     const double nothing  = 1.0 / (allowed_share * allowed_share);
     const double missing  = (instants - sums->n) * each * nothing;
     const double offset_N = cylinder->count * dig_cylinder_head_m2(cylinder) * offset_Pa;
-    const double seal_N   = dig_drive_seal_N(cylinder);
+    const double seal_N   = dig_cylinder_seal_N(cylinder);
     if (!(sums->n > 0.0)) {
         return missing;
     }

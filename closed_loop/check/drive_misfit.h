@@ -14,9 +14,6 @@
 
 #include <stddef.h>
 
-/// 1 sigma of the dry friction of a drive's seals, which no one has to mend.
-double dig_drive_seal_N(const struct dig_cylinder *cylinder);
-
 /// What a drive would have to push at an instant (NaN where its joint cannot stand like that), and
 /// the share of its dry friction that it would have to overcome: 1 where the rod comes out, -1
 /// where it goes in.

@@ -1,9 +1,9 @@
 #include "closed_loop/check/machine_causes.h"
 
-#include "closed_loop/check/drive_misfit.h"
 #include "closed_loop/machine/machine_fit.h"
 #include "closed_loop/machine/machine_noise.h"
 #include "core/units.h"
+#include "estimator/wrench/cylinder.h"
 
 #include <assert.h>
 #include <math.h>
@@ -85,7 +85,7 @@ static struct meaning meaning_of(const struct dig_machine *const      machine,
         tolerance = inertia_share * machine->link[DIG_JOINT_BUCKET].inertia_kgm2;
     } else if (column->effect == DIG_EFFECT_CYLINDER_FRICTION && p < SEALS) {
         tolerance = p % OF_A_SEAL == COULOMB
-                        ? dig_drive_seal_N(&machine->cylinder[drive[p / OF_A_SEAL]])
+                        ? dig_cylinder_seal_N(&machine->cylinder[drive[p / OF_A_SEAL]])
                     : p % OF_A_SEAL == STRIBECK ? 0.0
                                                 : column->scale;
     }

@@ -26,7 +26,8 @@ static enum dig_status append(struct dig_observed_digs *const     digs,
 // Drives the estimator through the recording and observes what it hands out.
 static enum dig_status
 drive(struct dig_estimator *const estimator, const struct dig_machine *const machine,
-      const struct dig_curve_set *const set, const struct dig_estimator_settings *const settings,
+      const struct dig_friction stated[], const struct dig_curve_set *const set,
+      const struct dig_estimator_settings *const settings,
       const struct dig_machine_recording *const recording, struct dig_observed_digs *const digs)
 {
     struct dig_estimate    estimate = { .dig_count = 0 };
@@ -40,7 +41,7 @@ drive(struct dig_estimator *const estimator, const struct dig_machine *const mac
         }
         struct dig_recorded_dig *const dug = dig_estimator_take_recording(estimator);
         if (dug != NULL) {
-            dig_inertia_take_off(machine, lambda, &dug->window);
+            dig_inertia_take_off(machine, stated, lambda, &dug->window);
             status = dig_recorded_dig_observe(set, settings, dug, &observation) == DIG_OK
                          ? append(digs, &observation)
                          : DIG_OK;
@@ -102,7 +103,8 @@ static enum dig_status observe(const struct dig_machine *const           machine
     }
     const bool corrects = corrected != NULL && corrected->corrects;
     status =
-        drive(estimator, corrects ? &corrected->machine : machine, set, &settings, recording, digs);
+        drive(estimator, corrects ? &corrected->machine : machine,
+              corrects ? corrected->correction.friction : NULL, set, &settings, recording, digs);
     if (status == DIG_OK) {
         status = tell_depths(set, settings.path_limit_m, digs);
     }

@@ -78,6 +78,20 @@ static void lay_measured(const double                        place[const DIG_CUR
     memcpy(y, laid, sizeof laid);
 }
 
+static void lay_rubs(const double                        place[const DIG_CURVE_POINTS],
+                     const struct dig_observation *const old,
+                     const struct dig_observation *const new, float y[const DIG_CURVE_POINTS])
+{
+    double laid[DIG_CURVE_POINTS];
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        laid[k] = (double)y[k];
+    }
+    lay_measured(place, old, new, laid);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        y[k] = (float)laid[k];
+    }
+}
+
 void dig_laid_observation(const struct dig_curve_set *const set, const double depth,
                           struct dig_observation *const dig)
 {
@@ -93,6 +107,11 @@ void dig_laid_observation(const struct dig_curve_set *const set, const double de
     dig->last           = whole_at_end(back.step * old.last + back.offset / ends);
     lay_measured(place, &old, dig, dig->moment_Nm);
     lay_measured(place, &old, dig, dig->sigma_Nm);
+    for (size_t j = 0; j < DIG_RUBS; j++) {
+        for (size_t c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            lay_rubs(place, &old, dig, dig->rubs[j][c]);
+        }
+    }
     for (size_t c = 0; dig->forces && c + 1 < DIG_FORCE_CHANNELS; c++) {
         lay_measured(place, &old, dig, dig->force_N[c]);
         lay_measured(place, &old, dig, dig->force_sigma_N[c]);

@@ -44,6 +44,7 @@ void dig_live_recording_add(struct dig_live_recording *const  live,
 enum dig_status dig_live_recording_observe(const struct dig_curve_set *const          set,
                                            const struct dig_estimator_settings *const settings,
                                            const struct dig_machine *const            machine,
+                                           const struct dig_friction                  stated[],
                                            const struct dig_live_recording *const     live,
                                            struct dig_recorded_dig *const             scratch,
                                            struct dig_observation *const              observation)
@@ -65,7 +66,8 @@ enum dig_status dig_live_recording_observe(const struct dig_curve_set *const    
     scratch->window.stride                = window->stride;
     memcpy(scratch->window.sample, window->sample, window->count * sizeof window->sample[0]);
     if (machine != NULL) {
-        dig_inertia_take_off(machine, machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m,
+        dig_inertia_take_off(machine, stated,
+                             machine->link[DIG_JOINT_BUCKET].length_m / set->tooth_m,
                              &scratch->window);
     }
     return dig_recorded_dig_observe(set, settings, scratch, observation);

@@ -65,7 +65,8 @@ static struct dig_distance distance_at(const struct problem *const    problem,
         if (dig_cell_find(problem->set, gravel, group->trajectory, &cell) != DIG_OK) {
             return (struct dig_distance){ .distance = no_curve, .noise_floor = no_curve };
         }
-        dig_misfit_add(&all, dig_cell_misfit(&cell, group));
+        const struct dig_misfit misfit = dig_cell_misfit(&cell, group);
+        dig_misfit_add(&all, &misfit);
     }
     return dig_misfit_distance(&all);
 }

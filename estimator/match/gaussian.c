@@ -3,6 +3,7 @@
 #include "core/outline.h"
 #include "core/units.h"
 #include "estimator/match/entry_scatter.h"
+#include "estimator/match/rubbed.h"
 
 #include <assert.h>
 #include <math.h>
@@ -155,7 +156,7 @@ static bool factor(const struct matrix *const c, struct dig_gaussian *const g)
 // Over one block of an outline; count is 0 where a point was not measured.
 struct half {
     bool   whole;
-    double mean, sigma2, inverse_digs;
+    double mean, sigma2, inverse_digs, rubs[DIG_RUBS];
 };
 
 static struct half half_of(const struct dig_pooled *const group, const size_t channel,
@@ -167,6 +168,9 @@ static struct half half_of(const struct dig_pooled *const group, const size_t ch
         h.mean += group->mean[channel][k] / POINTS;
         h.sigma2 += group->sigma2[channel][k] / POINTS;
         h.inverse_digs += 1.0 / group->count[k] / POINTS;
+        for (size_t j = 0; j < DIG_RUBS; j++) {
+            h.rubs[j] += (double)group->rubs[j][channel][k] / POINTS;
+        }
     }
     return h;
 }
@@ -198,6 +202,9 @@ static void measure(const struct dig_pooled *const group, const double variance[
                 to->mean += weight * half[h].mean;
                 to->sigma2 += weight * half[h].sigma2 * half[h].inverse_digs;
                 to->inverse_digs += weight * half[h].inverse_digs;
+                for (size_t j = 0; j < DIG_RUBS; j++) {
+                    to->rubs[j] += weight * half[h].rubs[j];
+                }
             }
         }
     }
@@ -209,7 +216,8 @@ void dig_gaussian_make(const struct dig_curve_set *const set, const struct dig_p
     assert(set != NULL && set->outline != NULL && group != NULL && g != NULL);
     *g = (struct dig_gaussian){ .set        = set,
                                 .trajectory = group->trajectory,
-                                .channels   = group->forces ? CHANNELS : 1 };
+                                .channels   = group->forces ? CHANNELS : 1,
+                                .rubbed     = group->rubbed };
     struct matrix c;
     double        variance[NUMBERS];
     if (set->covariance != NULL && set->covariance[group->trajectory].freedom >= least_freedom) {
@@ -283,6 +291,27 @@ static void predict_numbers(const struct dig_gaussian *const g, const struct dig
     }
 }
 
+// What friction may have added to whitened misses.
+static void take_rubbed(const struct dig_gaussian *const g, const struct there there[],
+                        const double miss[], struct dig_mahalanobis *const misses)
+{
+    double            rubs[NUMBERS][DIG_RUBS];
+    struct dig_rubbed rubbed = { .b = { 0.0 } };
+    for (size_t i = 0; i < g->numbers; i++) {
+        for (size_t r = 0; r < DIG_RUBS; r++) {
+            double rest = g->compared[i].rubs[r] / sqrt(there[i].u2);
+            for (size_t j = 0; j < i; j++) {
+                rest -= g->lower[i][j] * rubs[j][r];
+            }
+            rubs[i][r] = rest * g->lower[i][i];
+        }
+        dig_rubbed_add(miss[i], rubs[i], &rubbed);
+    }
+    const struct dig_rubbed_sums sums = dig_rubbed_sum(&rubbed, 1.0);
+    misses->square -= sums.explained;
+    misses->log_det += sums.log_det;
+}
+
 struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const g,
                                                 const struct dig_cell *const     cell)
 {
@@ -308,6 +337,9 @@ struct dig_mahalanobis dig_gaussian_mahalanobis(const struct dig_gaussian *const
         }
         miss[i] *= g->lower[i][i];
         misses.square += miss[i] * miss[i];
+    }
+    if (g->rubbed) {
+        take_rubbed(g, there, miss, &misses);
     }
     return misses;
 }

@@ -15,7 +15,8 @@
 // variance on the diagonal. Of too few packings S is that of entry_scatter.h, with the table's
 // pooled spread.
 //
-// Parts that are common to all digs, of the table, do not average down with their number.
+// Parts that are common to all digs, of the table, do not average down with their number; nor does
+// friction of a machine's drives (rubbed.h), which is added to D.
 
 #ifndef DIG_ESTIMATOR_MATCH_GAUSSIAN_H
 #define DIG_ESTIMATOR_MATCH_GAUSSIAN_H
@@ -39,8 +40,10 @@ struct dig_gaussian {
         size_t channel, block;
         bool   first, second;        // half of the block that was measured completely
         double mean, sigma2;         // of the digs, sigma2 of their mean
+        double rubs[DIG_RUBS];       // what 1 sigma of each drive's friction adds to the mean
         double inverse_digs, spread; // sqrt(S_ii)
     } compared[DIG_COVARIANCE_NUMBERS];
+    bool rubbed; // by drives whose friction is not known
     // L of C = L L', below the diagonal; on it the inverse.
     double lower[DIG_COVARIANCE_NUMBERS][DIG_COVARIANCE_NUMBERS];
 };

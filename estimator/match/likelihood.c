@@ -1,6 +1,7 @@
 #include "estimator/match/likelihood.h"
 
 #include "estimator/match/entry_scatter.h"
+#include "estimator/match/rubbed.h"
 
 #include <assert.h>
 #include <math.h>
@@ -43,23 +44,33 @@ static void make_curve(const struct dig_likelihood *const l, const struct dig_ce
     }
 }
 
-// (m - t)' D^-1 (m - t) + log det D at one point, about a mean of packings. By Cholesky's
-// square-root-free form, D = L diag(d) L'.
-static double misfit_at(const struct dig_likelihood *const l, const double inverse_packings,
-                        const struct channel_curve curve[const DIG_FORCE_CHANNELS], const size_t k)
+// Sums over points.
+struct misfit {
+    double            square, log_det; // (m - t)' D^-1 (m - t), log det D
+    struct dig_rubbed rubbed;
+};
+
+// Adds one point's, about a mean of packings. By Cholesky's square-root-free form, D = L diag(d)
+// L'.
+static void add_point(const struct dig_likelihood *const l, const double inverse_packings,
+                      const struct channel_curve curve[const DIG_FORCE_CHANNELS], const size_t k,
+                      struct misfit *const misfit)
 {
     double       spread[DIG_FORCE_CHANNELS];
     double       lower[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS];
     double       d[DIG_FORCE_CHANNELS];
     double       miss[DIG_FORCE_CHANNELS];
+    double       rubs[DIG_FORCE_CHANNELS][DIG_RUBS];
     const double inverse_digs = 1.0 / l->group->count[k];
-    double       sum          = 0.0;
     double       determinant  = 1.0;
     for (size_t i = 0; i < l->channels; i++) {
         const double spread2 = curve[i].spread2[k] * (inverse_digs + inverse_packings) + least_d;
         spread[i]            = sqrt(spread2);
         d[i]                 = spread2 + l->group->sigma2[i][k] * inverse_digs;
         miss[i]              = l->group->mean[i][k] - curve[i].mean[k];
+        for (size_t r = 0; l->rubbed && r < DIG_RUBS; r++) {
+            rubs[i][r] = (double)l->group->rubs[r][i][k];
+        }
         for (size_t j = 0; j < i; j++) {
             lower[i][j] = dig_entry_scatter_between[i][j] * spread[i] * spread[j];
             for (size_t m = 0; m < j; m++) {
@@ -68,25 +79,39 @@ static double misfit_at(const struct dig_likelihood *const l, const double inver
             lower[i][j] /= d[j];
             d[i] -= lower[i][j] * lower[i][j] * d[j];
             miss[i] -= lower[i][j] * miss[j];
+            for (size_t r = 0; l->rubbed && r < DIG_RUBS; r++) {
+                rubs[i][r] -= lower[i][j] * rubs[j][r];
+            }
         }
-        sum += miss[i] * miss[i] / d[i];
+        misfit->square += miss[i] * miss[i] / d[i];
         determinant *= d[i];
     }
-    return sum + log(determinant);
+    for (size_t i = 0; l->rubbed && i < l->channels; i++) {
+        const double inverse = 1.0 / sqrt(d[i]);
+        for (size_t r = 0; r < DIG_RUBS; r++) {
+            rubs[i][r] *= inverse;
+        }
+        dig_rubbed_add(inverse * miss[i], rubs[i], &misfit->rubbed);
+    }
+    misfit->log_det += log(determinant);
 }
 
 double dig_likelihood_log(const struct dig_likelihood *const l, const struct dig_cell *const cell)
 {
     assert(l != NULL && cell != NULL);
     struct channel_curve curve[DIG_FORCE_CHANNELS] = { { .mean = { 0.0 } } };
-    double               sum                       = 0.0;
+    struct misfit        misfit                    = { .square = 0.0 };
+    const double         weight                    = l->effective / l->measured_count;
     for (size_t c = 0; c < l->channels; c++) {
         make_curve(l, cell, c, &curve[c]);
     }
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
-        sum += l->group->count[k] > 0.0 ? misfit_at(l, cell->inverse_packings, curve, k) : 0.0;
+        if (l->group->count[k] > 0.0) {
+            add_point(l, cell->inverse_packings, curve, k, &misfit);
+        }
     }
-    return -0.5 * l->effective * sum / l->measured_count;
+    const struct dig_rubbed_sums rubbed = dig_rubbed_sum(&misfit.rubbed, weight);
+    return -0.5 * (weight * (misfit.square + misfit.log_det) - rubbed.explained + rubbed.log_det);
 }
 
 void dig_likelihood_make(const struct dig_curve_set *const set,
@@ -94,7 +119,8 @@ void dig_likelihood_make(const struct dig_curve_set *const set,
 {
     assert(set != NULL && group != NULL && l != NULL);
     *l = (struct dig_likelihood){ .group    = group,
-                                  .channels = group->forces ? DIG_FORCE_CHANNELS : 1 };
+                                  .channels = group->forces ? DIG_FORCE_CHANNELS : 1,
+                                  .rubbed   = group->rubbed };
     for (size_t n = 0; n < DIG_COVARIANCE_NUMBERS; n++) {
         l->relative2[n / DIG_COVARIANCE_BLOCKS] +=
             set->relative2[group->trajectory][n] / DIG_COVARIANCE_BLOCKS;

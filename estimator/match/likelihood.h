@@ -12,8 +12,9 @@
 //
 //   spread^2 (1/n + 1/N) + sigma^2 / n
 //
-// and the correlations between channels of entry_scatter.h times the first part. spread: of one
-// dig, shrunk towards the table's pooled spread, as a standard deviation of three packings is
+// and the correlations between channels of entry_scatter.h times the first part. What friction of
+// the drives adds is one number a drive for all points (rubbed.h), and none of sigma. spread: of
+// one dig, shrunk towards the table's pooled spread, as a standard deviation of three packings is
 // uncertain; sigma: of one measurement.
 
 #ifndef DIG_ESTIMATOR_MATCH_LIKELIHOOD_H
@@ -22,6 +23,8 @@
 #include "core/curve.h"
 #include "estimator/approach/interpolate.h"
 #include "estimator/match/pool.h"
+
+#include <stdbool.h>
 
 /// Path over which errors of a dig are correlated (equivalent width), in bucket lengths. Measured
 /// on 26 LIGGGHTS digs of three gravels over 4 to 5 packings: autocorrelation of the normalised
@@ -32,6 +35,7 @@
 struct dig_likelihood {
     const struct dig_pooled *group;
     size_t                   channels;                      // the moment alone, or the forces too
+    bool                     rubbed;                        // by drives whose friction is not known
     double                   effective;                     // independent errors along the dig
     double                   relative2[DIG_FORCE_CHANNELS]; // pooled (sd / mean)^2
     double                   measured_count;                // points
@@ -42,7 +46,7 @@ void dig_likelihood_make(const struct dig_curve_set *set, const struct dig_poole
                          struct dig_likelihood *likelihood);
 
 /// Its logarithm at a cell of the trajectory (dig_cell_find), up to a constant. 4 microseconds,
-/// with forces 12.
+/// with forces 12, with friction 25.
 double dig_likelihood_log(const struct dig_likelihood *likelihood, const struct dig_cell *cell);
 
 /// Logarithm of the mean likelihood of the digs over the gravels of the table, evenly on friction,

@@ -87,18 +87,44 @@ struct dig_misfit dig_cell_misfit(const struct dig_cell *const   cell,
     double sd_Nm[DIG_CURVE_POINTS];
     dig_cell_blend(cell, DIG_CHANNEL_MY_Nm, mean_Nm, sd_Nm);
 
-    const double widened = 1.0 + cell->inverse_packings;
-    double       miss2   = 0.0;
-    double       floor2  = 0.0;
+    const double      widened           = 1.0 + cell->inverse_packings;
+    double            miss2             = 0.0;
+    double            rubs_Nm[DIG_RUBS] = { 0.0 };
+    struct dig_rubbed rubbed            = { .b = { 0.0 } };
+    double            floor2            = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double n    = group->count[k]; // 0 where nothing was measured
         const double miss = group->mean[DIG_CHANNEL_MY_Nm][k] - mean_Nm[k];
         miss2 += n * miss * miss;
         floor2 += n * (sd_Nm[k] * sd_Nm[k] * widened + group->sigma2[DIG_CHANNEL_MY_Nm][k]);
+        for (size_t j = 0; group->rubbed && j < DIG_RUBS; j++) {
+            rubs_Nm[j] = sqrt(n) * (double)group->rubs[j][DIG_CHANNEL_MY_Nm][k];
+        }
+        if (group->rubbed) {
+            dig_rubbed_add(sqrt(n) * miss, rubs_Nm, &rubbed);
+        }
     }
     return (struct dig_misfit){ .miss2_Nm2  = group->scatter_Nm2 + miss2,
                                 .floor2_Nm2 = floor2,
-                                .norm2_Nm2  = group->norm2_Nm2 };
+                                .norm2_Nm2  = group->norm2_Nm2,
+                                .rubbed     = rubbed };
+}
+
+void dig_misfit_add(struct dig_misfit *const sum, const struct dig_misfit *const more)
+{
+    assert(sum != NULL && more != NULL);
+    sum->miss2_Nm2 += more->miss2_Nm2;
+    sum->floor2_Nm2 += more->floor2_Nm2;
+    sum->norm2_Nm2 += more->norm2_Nm2;
+    dig_rubbed_join(&sum->rubbed, &more->rubbed);
+}
+
+struct dig_distance dig_misfit_distance(const struct dig_misfit *const sum)
+{
+    assert(sum != NULL);
+    const double left2 = dig_rubbed_left2(&sum->rubbed, sum->miss2_Nm2, sum->floor2_Nm2);
+    return (struct dig_distance){ .distance    = sqrt(left2 / sum->norm2_Nm2),
+                                  .noise_floor = sqrt(sum->floor2_Nm2 / sum->norm2_Nm2) };
 }
 
 enum dig_status dig_match_interpolate(const struct dig_curve_set *const set,
@@ -127,8 +153,9 @@ static struct dig_distance entry_distance(const struct dig_curve_set *const set,
         if (set->packings[slot] <= 0) {
             return (struct dig_distance){ .distance = INFINITY };
         }
-        const struct dig_cell cell = dig_cell_of_entry(set, slot);
-        dig_misfit_add(&all, dig_cell_misfit(&cell, &sums->group[g]));
+        const struct dig_cell   cell   = dig_cell_of_entry(set, slot);
+        const struct dig_misfit misfit = dig_cell_misfit(&cell, &sums->group[g]);
+        dig_misfit_add(&all, &misfit);
     }
     return dig_misfit_distance(&all);
 }

@@ -8,32 +8,25 @@
 #include "core/curve.h"
 #include "core/gravel_match.h"
 #include "core/observation.h"
+#include "estimator/match/rubbed.h"
 
 #include <math.h>
 
-/// Distance of digs from a curve of the table, and what noise alone would make it; both relative to
-/// the norm of the measurement.
+/// Distance of digs from a curve of the table, less what friction of the drives explains of it
+/// (rubbed.h), and what noise alone would make it; both relative to the norm of the measurement.
 struct dig_distance {
     double distance, noise_floor;
 };
 
 /// The same as sums of squares over points and digs.
 struct dig_misfit {
-    double miss2_Nm2, floor2_Nm2, norm2_Nm2;
+    double            miss2_Nm2, floor2_Nm2, norm2_Nm2;
+    struct dig_rubbed rubbed; // of misses, and what friction adds, Nm
 };
 
-static inline void dig_misfit_add(struct dig_misfit *const sum, const struct dig_misfit more)
-{
-    sum->miss2_Nm2 += more.miss2_Nm2;
-    sum->floor2_Nm2 += more.floor2_Nm2;
-    sum->norm2_Nm2 += more.norm2_Nm2;
-}
+void dig_misfit_add(struct dig_misfit *sum, const struct dig_misfit *more);
 
-static inline struct dig_distance dig_misfit_distance(const struct dig_misfit *const sum)
-{
-    return (struct dig_distance){ .distance    = sqrt(sum->miss2_Nm2 / sum->norm2_Nm2),
-                                  .noise_floor = sqrt(sum->floor2_Nm2 / sum->norm2_Nm2) };
-}
+struct dig_distance dig_misfit_distance(const struct dig_misfit *sum);
 
 struct dig_cell;   // estimator/approach/interpolate.h
 struct dig_pooled; // estimator/match/pool.h
@@ -62,7 +55,7 @@ DIG_MUST_CHECK enum dig_status dig_match_interpolate(const struct dig_curve_set 
 ///
 /// An entry that lacks a trajectory that was dug is skipped. DIG_ENOMATCH: every entry lacks one.
 /// DIG_EINVAL: an observation fails dig_observations_check(). O(entries), but few curves are
-/// compared in full (estimator/match/nearest.h); 120 kB of stack.
+/// compared in full (estimator/match/nearest.h); 270 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set, size_t digs,
                                                  const struct dig_observation dig[],
                                                  double outside_floors, struct dig_match *match);
@@ -71,7 +64,7 @@ DIG_MUST_CHECK enum dig_status dig_match_nearest(const struct dig_curve_set *set
 /// of several that are equal, over every channel that all digs measured; of a valid match of these
 /// digs, whose nearest entry has all trajectories that were dug. Sets weighted, and
 /// weighted_distance, of which 1 is expected of digs of the entry's gravel; -1 and NaN: nothing can
-/// be compared. O(entries), some 0.05 microseconds each; 200 kB of stack.
+/// be compared. O(entries), some 0.05 microseconds each; 350 kB of stack.
 void dig_match_find_weighted(const struct dig_curve_set *set, size_t digs,
                              const struct dig_observation dig[], struct dig_match *match);
 
@@ -97,7 +90,7 @@ void dig_match_unresolved(const struct dig_match *match, char text[DIG_UNTOLD_SI
 /// whether the gravel is outside the table; where every dig has forces, also by their excess over
 /// the most probable gravel (DIG_POSTERIOR_OUTSIDE), and the gravel is then that of the moment
 /// alone. DIG_EINVAL: no valid match of these digs, or max_evaluations < 1; DIG_ENOMEM. *match is
-/// unchanged then. Allocates (in NLopt): never in the tick. Some ten milliseconds; 350 kB of stack.
+/// unchanged then. Allocates (in NLopt): never in the tick. Some ten milliseconds; 500 kB of stack.
 DIG_MUST_CHECK enum dig_status dig_fit_refine(const struct dig_curve_set *set, size_t digs,
                                               const struct dig_observation dig[],
                                               int max_evaluations, struct dig_match *match);

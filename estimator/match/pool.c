@@ -42,10 +42,18 @@ static void add(struct dig_pooled *const group, const struct dig_observation *co
         const double off_Nm    = moment_Nm - group->mean[DIG_CHANNEL_MY_Nm][k];
         group->count[k] += 1.0;
         for (size_t c = 0; c < channels; c++) {
-            const double value = c == 0 ? moment_Nm : dig->force_N[c - 1][k];
-            const double sigma = c == 0 ? dig->sigma_Nm[k] : dig->force_sigma_N[c - 1][k];
+            const double value  = c == 0 ? moment_Nm : dig->force_N[c - 1][k];
+            const double sigma  = c == 0 ? dig->sigma_Nm[k] : dig->force_sigma_N[c - 1][k];
+            double       sigma2 = sigma * sigma;
+            for (size_t j = 0; j < DIG_RUBS; j++) {
+                const float  rubs = dig->rubs[j][c][k];
+                float *const mean = &group->rubs[j][c][k];
+                *mean += (rubs - *mean) / (float)group->count[k];
+                sigma2 -= (double)rubs * (double)rubs;
+                group->rubbed = group->rubbed || fabsf(rubs) > 0.0F;
+            }
             group->mean[c][k] += (value - group->mean[c][k]) / group->count[k];
-            group->sigma2[c][k] += (sigma * sigma - group->sigma2[c][k]) / group->count[k];
+            group->sigma2[c][k] += (fmax(sigma2, 0.0) - group->sigma2[c][k]) / group->count[k];
         }
         group->scatter_Nm2 += off_Nm * (moment_Nm - group->mean[DIG_CHANNEL_MY_Nm][k]);
         group->norm2_Nm2 += moment_Nm * moment_Nm;

@@ -23,9 +23,13 @@ struct dig_pooled {
     size_t trajectory;
     double count[DIG_CURVE_POINTS]; // digs that measured the point
     bool   forces;                  // every dig has them; else only the moment is summed
-    // Of each channel the mean of them, 0 where there is none, and the mean square of their sigmas.
+    // Of each channel the mean of them, 0 where there is none, and the mean square of their sigmas,
+    // friction of the drives left out.
     double mean[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double sigma2[DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
+    // What 1 sigma of each drive's friction adds to the mean: all digs of a machine share it.
+    bool   rubbed; // anywhere
+    float  rubs[DIG_RUBS][DIG_FORCE_CHANNELS][DIG_CURVE_POINTS];
     double scatter_Nm2; // squares of moment less mean, over digs and points
     double norm2_Nm2;   // squares of the moments, over digs and points
 };
@@ -39,7 +43,7 @@ struct dig_pool_sums {
 };
 
 /// Sums of digs that each passed dig_observations_check(), youngest last; any number from 1 on.
-/// About 6 kB a trajectory are written. O(digs).
+/// About 33 kB a trajectory are written. O(digs).
 void dig_pool_sum(size_t digs, const struct dig_observation dig[], struct dig_pool_sums *sums);
 
 #endif // DIG_ESTIMATOR_MATCH_POOL_H

@@ -38,6 +38,38 @@ struct search {
     double                      least; // its q
 };
 
+// by = M^-1 by, with M M' = 1 + W W': W is what friction adds to whitened numbers.
+static void take_rubbed(struct compared_group *const a)
+{
+    const struct dig_gaussian *const g = &a->gaussian;
+    double                           rubs[NUMBERS][DIG_RUBS];
+    double                           lower[NUMBERS][NUMBERS];
+    for (size_t i = 0; i < g->numbers; i++) {
+        for (size_t r = 0; r < DIG_RUBS; r++) {
+            rubs[i][r] = 0.0;
+            for (size_t j = 0; j <= i; j++) {
+                rubs[i][r] += a->by[i][j] * g->compared[j].rubs[r];
+            }
+        }
+        for (size_t j = 0; j <= i; j++) {
+            double sum = i == j ? 1.0 : 0.0;
+            for (size_t r = 0; r < DIG_RUBS; r++) {
+                sum += rubs[i][r] * rubs[j][r];
+            }
+            for (size_t k = 0; k < j; k++) {
+                sum -= lower[i][k] * lower[j][k];
+            }
+            lower[i][j] = i == j ? sqrt(sum) : sum / lower[j][j];
+        }
+        for (size_t j = 0; j <= i; j++) {
+            for (size_t k = j; k < i; k++) {
+                a->by[i][j] -= lower[i][k] * a->by[k][j];
+            }
+            a->by[i][j] /= lower[i][i];
+        }
+    }
+}
+
 // by = L^-1 U^-1.
 static void whiten(const struct dig_curve_set *const set, const size_t nearest,
                    struct compared_group *const a)
@@ -48,13 +80,20 @@ static void whiten(const struct dig_curve_set *const set, const size_t nearest,
     double u[NUMBERS];
     dig_gaussian_scale(g, &cell, u);
     for (size_t i = 0; i < g->numbers; i++) {
-        a->white[i] = 0.0;
         for (size_t j = 0; j <= i; j++) {
             double sum = i == j ? 1.0 / u[j] : 0.0;
             for (size_t k = j; k < i; k++) {
                 sum -= g->lower[i][k] * a->by[k][j];
             }
             a->by[i][j] = sum * g->lower[i][i];
+        }
+    }
+    if (g->rubbed) {
+        take_rubbed(a);
+    }
+    for (size_t i = 0; i < g->numbers; i++) {
+        a->white[i] = 0.0;
+        for (size_t j = 0; j <= i; j++) {
             a->white[i] += a->by[i][j] * g->compared[j].mean;
         }
     }

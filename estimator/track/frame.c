@@ -25,6 +25,16 @@ struct dig_route dig_frame_route(const struct dig_route *const route, const doub
     return turned;
 }
 
+// Of an error that is one number in both.
+static void turn_error(const double c, const double s, float error[DIG_FORCE_CHANNELS])
+{
+    const double x = error[DIG_CHANNEL_FX_N];
+    const double z = error[DIG_CHANNEL_FZ_N];
+
+    error[DIG_CHANNEL_FX_N] = (float)(c * x + s * z);
+    error[DIG_CHANNEL_FZ_N] = (float)(c * z - s * x);
+}
+
 static void turn_sigma(const double c, const double s, float sigma[DIG_FORCE_CHANNELS])
 {
     const double x = sigma[DIG_CHANNEL_FX_N];
@@ -46,4 +56,7 @@ void dig_frame_turn_forces(const double pitch_rad, struct dig_window_sample *con
     sample->value[DIG_CHANNEL_FZ_N] = c * z - s * x;
     turn_sigma(c, s, sample->sigma);
     turn_sigma(c, s, sample->slow);
+    for (size_t j = 0; j < DIG_RUBS; j++) {
+        turn_error(c, s, sample->rubs[j]);
+    }
 }

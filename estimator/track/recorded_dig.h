@@ -55,7 +55,7 @@ double dig_recorded_dig_pitch_rad(const struct dig_recorded_dig *recording);
 void dig_recorded_dig_turn(struct dig_recorded_dig *recording, const struct dig_curve_set *set,
                            double pitch_rad);
 
-/// Size of the struct, about 2 MB: for allocating one.
+/// Size of the struct, about 3 MB: for allocating one.
 size_t dig_recorded_dig_size(void);
 
 #endif // DIG_ESTIMATOR_TRACK_RECORDED_DIG_H

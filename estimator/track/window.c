@@ -213,24 +213,55 @@ static double smoothed_sigma(const struct dig_window *const window, const struct
     return sqrt(slow * slow + left * white2);
 }
 
-// Smooths a channel and evaluates it and its sigma at the grid.
-static void read_channel(struct dig_window *const window, const struct range range,
-                         const double half_s, const struct spot spot[], const size_t channel,
-                         double out[DIG_CURVE_POINTS], double sigma[DIG_CURVE_POINTS])
+// Smooths window->value, a channel's, and evaluates it at the grid's spots; 0 where there is none.
+static void smooth_at(struct dig_window *const window, const struct range range,
+                      const double half_s, const struct spot spot[], double out[DIG_CURVE_POINTS])
 {
-    for (size_t i = range.first; i < range.end; i++) {
-        window->value[i] = window->sample[i].value[channel];
-    }
     dig_curve_smooth(range.end - range.first, &window->table_s[range.first],
                      &window->value[range.first], half_s, &window->smooth[range.first]);
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const size_t i = spot[k].sample;
-        out[k]         = 0.0;
-        sigma[k]       = 0.0;
-        if (spot[k].measured) {
-            out[k] =
-                window->smooth[i] + spot[k].share * (window->smooth[i + 1] - window->smooth[i]);
-            sigma[k] = smoothed_sigma(window, range, i, half_s, channel);
+        out[k]         = spot[k].measured ? window->smooth[i] +
+                                        spot[k].share * (window->smooth[i + 1] - window->smooth[i])
+                                          : 0.0;
+    }
+}
+
+// What friction of a drive adds to a channel: the error is smoothed as the channel is.
+static void read_rubs(struct dig_window *const window, const struct range range,
+                      const double half_s, const struct spot spot[], const size_t drive,
+                      const size_t channel, float out[DIG_CURVE_POINTS])
+{
+    double rubs[DIG_CURVE_POINTS];
+    for (size_t i = range.first; i < range.end; i++) {
+        window->value[i] = (double)window->sample[i].rubs[drive][channel];
+    }
+    smooth_at(window, range, half_s, spot, rubs);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        out[k] = (float)rubs[k];
+    }
+}
+
+// Smooths a channel and evaluates it and its sigma at the grid.
+static void read_channel(struct dig_window *const window, const struct range range,
+                         const double half_s, const struct spot spot[], const size_t channel,
+                         struct dig_observation *const to)
+{
+    const bool    moment = channel == DIG_CHANNEL_MY_Nm;
+    double *const out    = moment ? to->moment_Nm : to->force_N[channel - 1];
+    double *const sigma  = moment ? to->sigma_Nm : to->force_sigma_N[channel - 1];
+    for (size_t j = 0; j < DIG_RUBS; j++) {
+        read_rubs(window, range, half_s, spot, j, channel, to->rubs[j][channel]);
+    }
+    for (size_t i = range.first; i < range.end; i++) {
+        window->value[i] = window->sample[i].value[channel];
+    }
+    smooth_at(window, range, half_s, spot, out);
+    for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
+        sigma[k] =
+            spot[k].measured ? smoothed_sigma(window, range, spot[k].sample, half_s, channel) : 0.0;
+        for (size_t j = 0; j < DIG_RUBS; j++) {
+            sigma[k] = hypot(sigma[k], (double)to->rubs[j][channel][k]);
         }
     }
 }
@@ -262,12 +293,9 @@ enum dig_status dig_window_observe(struct dig_window *const      window,
     if (find_spots(window, range, first, last, spot) < 2) {
         return DIG_ENOMATCH;
     }
-    read_channel(window, range, half_s, spot, DIG_CHANNEL_MY_Nm, observation->moment_Nm,
-                 observation->sigma_Nm);
     observation->forces = has_forces(window, range);
-    for (size_t c = 1; observation->forces && c < DIG_FORCE_CHANNELS; c++) {
-        read_channel(window, range, half_s, spot, c, observation->force_N[c - 1],
-                     observation->force_sigma_N[c - 1]);
+    for (size_t c = 0; c < (observation->forces ? DIG_FORCE_CHANNELS : 1); c++) {
+        read_channel(window, range, half_s, spot, c, observation);
     }
     const struct dig_path_point *const left = &window->sample[window->count - 1].pose;
 

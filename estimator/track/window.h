@@ -26,6 +26,8 @@ struct dig_window_sample {
     double                value[DIG_FORCE_CHANNELS];
     float                 sigma[DIG_FORCE_CHANNELS]; // 1 sigma
     float                 slow[DIG_FORCE_CHANNELS];  // its part that does not average down
+    // What 1 sigma of each friction adds besides (core/observation.h).
+    float rubs[DIG_RUBS][DIG_FORCE_CHANNELS];
 };
 
 /// Zeroed: closed and empty, stride 0 counts as 1.

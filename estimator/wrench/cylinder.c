@@ -9,6 +9,8 @@
 // Perfect vacuum, as a gauge shows it.
 static const double vacuum_Pa = -1e5;
 
+static const double seal_share = 0.01;
+
 double dig_reading_sigma(const double step, const double sigma)
 {
     return sqrt(step * step / 12.0 + sigma * sigma);
@@ -47,6 +49,12 @@ enum dig_status dig_cylinder_push(const struct dig_cylinder *const cylinder, con
                  fmin(head_Pa, rod_Pa) > vacuum_Pa - margin_Pa,
     };
     return DIG_OK;
+}
+
+double dig_cylinder_seal_N(const struct dig_cylinder *const cylinder)
+{
+    assert(cylinder != NULL);
+    return seal_share * cylinder->count * cylinder->relief_Pa * dig_cylinder_head_m2(cylinder);
 }
 
 bool dig_cylinder_is_clear(const struct dig_cylinder *const cylinder, const double length_m)

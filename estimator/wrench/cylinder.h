@@ -39,6 +39,10 @@ DIG_MUST_CHECK enum dig_status dig_cylinder_push(const struct dig_cylinder *cyli
 /// True when the cylinder stands clear of both ends of its stroke.
 bool dig_cylinder_is_clear(const struct dig_cylinder *cylinder, double length_m);
 
+/// 1 sigma of the dry friction of a drive's seals, of which its file says nothing, N: a hundredth
+/// of its largest push.
+double dig_cylinder_seal_N(const struct dig_cylinder *cylinder);
+
 /// 1 sigma of one reading with quantisation step and sensor noise sigma, both in one unit.
 double dig_reading_sigma(double step, double sigma);
 

@@ -21,6 +21,7 @@ void dig_early_match_clear(struct dig_early_match *const     early,
 bool dig_early_match_observe(struct dig_early_match *const     early,
                              const struct dig_curve_set *const set, const double lambda,
                              const struct dig_machine *const machine,
+                             const struct dig_friction       stated[],
                              const struct dig_config *const  config,
                              struct dig_observation *const   dig)
 {
@@ -43,13 +44,13 @@ bool dig_early_match_observe(struct dig_early_match *const     early,
     early->next_progress = e->progress + retry_step;
 
     struct dig_observation seen;
-    const enum dig_status  status = dig_live_recording_observe(set, &config->estimator, machine,
-                                                               &early->live, &early->scratch, &seen);
-    early->off_table_trajectory   = status == DIG_ENOMATCH &&
+    const enum dig_status  status = dig_live_recording_observe(
+         set, &config->estimator, machine, stated, &early->live, &early->scratch, &seen);
+    early->off_table_trajectory = status == DIG_ENOMATCH &&
                                           e->progress >= config->match_early_path &&
                                           dig_approach_varies(set, (size_t)e->trajectory)
-                                        ? e->trajectory
-                                        : -1;
+                                      ? e->trajectory
+                                      : -1;
     if (status != DIG_OK || seen.trajectory != e->trajectory ||
         seen.last - seen.first < config->match_early_path) {
         return false;

@@ -34,9 +34,11 @@ void dig_early_match_clear(struct dig_early_match *early, const struct dig_curve
 /// Records the estimates that came. Then observes the dig in progress if it is due: its trajectory
 /// identifies or was dug in several ways for the table, at least match_early_path of it was
 /// measured, and it advanced DIG_EARLY_MATCH_STEP since the last observation. True when *dig was
-/// written. Sets off_table_trajectory. machine: whose inertia is taken off; NULL: none.
+/// written. Sets off_table_trajectory. machine: whose inertia is taken off; NULL: none. stated: its
+/// friction, as dig_inertia_take_off() has it.
 bool dig_early_match_observe(struct dig_early_match *early, const struct dig_curve_set *set,
                              double lambda, const struct dig_machine *machine,
-                             const struct dig_config *config, struct dig_observation *dig);
+                             const struct dig_friction stated[], const struct dig_config *config,
+                             struct dig_observation *dig);
 
 #endif // DIG_FIRMWARE_HOST_MATCHING_EARLY_MATCH_H

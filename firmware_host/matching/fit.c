@@ -87,6 +87,12 @@ static const struct dig_machine *moved_machine(const struct dig_fit *const fit)
     return fit->basis.machine.corrects ? &fit->basis.machine.machine : fit->machine;
 }
 
+// The friction that a model tells of it; NULL: none.
+static const struct dig_friction *stated_friction(const struct dig_fit *const fit)
+{
+    return fit->basis.machine.corrects ? fit->basis.machine.correction.friction : NULL;
+}
+
 // Tells the depth of an observed dig. False where the table does not go so deep.
 static bool tell_depth(struct dig_fit *const fit, struct dig_observation *const dig)
 {
@@ -172,7 +178,7 @@ static void observe_early(struct dig_fit *const fit)
     const struct dig_curve_set *const set   = fit->matcher.set;
     struct dig_observation            dig;
     bool observed = dig_early_match_observe(early, set, fit->matcher.lambda, moved_machine(fit),
-                                            fit->config, &dig);
+                                            stated_friction(fit), fit->config, &dig);
     if (observed && !tell_depth(fit, &dig)) {
         early->off_table_trajectory = dig.trajectory;
         observed                    = false;
@@ -288,7 +294,8 @@ static bool take_finished(struct dig_fit *const fit)
     }
     const struct dig_machine *const machine = moved_machine(fit);
     if (machine != NULL) {
-        dig_inertia_take_off(machine, fit->matcher.lambda, &recording->window);
+        dig_inertia_take_off(machine, stated_friction(fit), fit->matcher.lambda,
+                             &recording->window);
     }
     struct dig_observation dig;
     if (dig_recorded_dig_observe(fit->matcher.set, &fit->config->estimator, recording, &dig) ==

@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "estimator/approach/approach_slots.h"
 #include "estimator/match/match.h"
+#include "estimator/match/rubbed.h"
 
 #include <assert.h>
 #include <math.h>
@@ -54,8 +55,10 @@ void dig_gravel_track_invalidate(struct dig_gravel_track *const track, const cha
 static double floors_between(const struct dig_observation *const dig,
                              const struct dig_curve *const       curve)
 {
-    double miss2  = 0.0;
-    double floor2 = 0.0;
+    struct dig_rubbed rubbed = { .b = { 0.0 } };
+    double            rubs_Nm[DIG_RUBS];
+    double            miss2  = 0.0;
+    double            floor2 = 0.0;
     for (size_t k = 0; k < DIG_CURVE_POINTS; k++) {
         const double at = (double)k / (DIG_CURVE_POINTS - 1);
         if (at < dig->first || at > dig->last) {
@@ -65,8 +68,13 @@ static double floors_between(const struct dig_observation *const dig,
         const double sd   = (double)curve->sd[DIG_CHANNEL_MY_Nm][k];
         miss2 += (dig->moment_Nm[k] - mean) * (dig->moment_Nm[k] - mean);
         floor2 += sd * sd + dig->sigma_Nm[k] * dig->sigma_Nm[k];
+        for (size_t j = 0; j < DIG_RUBS; j++) {
+            rubs_Nm[j] = (double)dig->rubs[j][DIG_CHANNEL_MY_Nm][k];
+            floor2 -= rubs_Nm[j] * rubs_Nm[j]; // no noise, but one number for all points
+        }
+        dig_rubbed_add(dig->moment_Nm[k] - mean, rubs_Nm, &rubbed);
     }
-    return sqrt(miss2 / floor2);
+    return sqrt(dig_rubbed_left2(&rubbed, miss2, floor2) / floor2);
 }
 
 // Compares a dig with its forecast. False where either is missing.

@@ -65,7 +65,7 @@ static enum dig_status dig(struct bench *const b, const size_t t, const struct d
     }
     const struct dig_curve_set *const set = &b->table.cube.set;
     enum dig_status                   status =
-        dig_live_recording_observe(set, &settings, NULL, &b->shadow, &b->scratch, seen);
+        dig_live_recording_observe(set, &settings, NULL, NULL, &b->shadow, &b->scratch, seen);
     if (status == DIG_OK) {
         struct dig_approach_error error[2];
         void *const               memory = malloc(dig_depth_fit_size(set));

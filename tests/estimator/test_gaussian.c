@@ -119,6 +119,59 @@ TEST(misses_are_as_large_as_digs_make_them)
     }
 }
 
+// Friction of two drives, one of which turns about, the same in all digs of a machine; half as
+// large in the moment as digs scatter, or twice.
+static void rub(const double share, const double of[2], struct dig_observation *const o)
+{
+    for (int k = 0; k < POINTS; k++) {
+        const double by[3][2] = { { share, 0.0 },
+                                  { -8.0 * share, 4.0 * share },
+                                  { 5.0 * share * k / POINTS, k < 100 ? share : -share } };
+        for (int c = 0; c < 3; c++) {
+            double *const value = c == 0 ? &o->moment_Nm[k] : &o->force_N[c - 1][k];
+            double *const sigma = c == 0 ? &o->sigma_Nm[k] : &o->force_sigma_N[c - 1][k];
+            for (int j = 0; j < 2; j++) {
+                *value += of[j] * by[c][j];
+                *sigma           = hypot(*sigma, by[c][j]);
+                o->rubs[j][c][k] = (float)by[c][j];
+            }
+        }
+    }
+}
+
+// Whatever friction a machine has, its digs miss by no more than digs without.
+TEST(misses_by_friction_are_no_larger_the_more_there_is)
+{
+    enum { TRIALS = 200, DIGS = 3 };
+    static const double shares[] = { 0.0, 0.02, 0.2, 2.0 };
+    double              without  = 0.0;
+    for (size_t s = 0; s < sizeof shares / sizeof shares[0]; s++) {
+        uint64_t                    seed = 6;
+        double                      sum  = 0.0;
+        struct dig_curve_set *const set  = taught(enough_freedom, true, &seed);
+        for (int trial = 0; trial < TRIALS; trial++) {
+            const struct dig_gravel *const gravel = &set->gravel[trial % 48];
+            const double                   of[2]  = { model_normal(&seed), model_normal(&seed) };
+            struct dig_observation         dig[DIGS];
+            struct dig_pool_sums           sums;
+            struct dig_gaussian            g;
+            struct dig_cell                cell;
+            for (int d = 0; d < DIGS; d++) {
+                dig[d] = dig_there(gravel, true, true, &seed);
+                rub(shares[s], of, &dig[d]);
+            }
+            dig_pool_sum(DIGS, dig, &sums);
+            dig_gaussian_make(set, &sums.group[0], &g);
+            assert_int_equal(dig_cell_find(set, gravel, MADE_SIMPLE_A, &cell), DIG_OK);
+            sum += dig_gaussian_mahalanobis(&g, &cell).square / (double)g.numbers / TRIALS;
+        }
+        print_message("friction %.2f: mean q over numbers %.3f\n", shares[s], sum);
+        without = s == 0 ? sum : without;
+        assert_close(sum, without, 0.05 * without);
+        forget(set);
+    }
+}
+
 // The posterior's interval holds the gravel of nine digs in ten, or a little more: the logarithm
 // counts by less than it would.
 TEST(the_interval_holds_the_gravel)

@@ -93,3 +93,56 @@ TEST(it_is_the_formula_written_out)
     }
     made_table_destroy(set);
 }
+
+// The oracle: every friction is tried, each as likely as a normal number is, and the digs are
+// compared with that friction taken off.
+TEST(what_friction_of_a_drive_adds_is_one_number_for_all_points)
+{
+    struct dig_curve_set *const set  = made_table(&options);
+    uint64_t                    seed = 33;
+    for (int trial = 0; trial < 6; trial++) {
+        const struct dig_gravel gravel = random_gravel(&seed);
+        struct dig_observation  dig    = make_dig(&gravel, MADE_SIMPLE_A, trial % 2 == 0, &seed);
+        for (int k = 0; k < POINTS; k++) { // the rod turns about
+            const double way                                 = k < 150 ? 1.0 : -1.0;
+            dig.rubs[DIG_JOINT_BUCKET][DIG_CHANNEL_MY_Nm][k] = (float)(0.05 * way);
+            dig.rubs[DIG_JOINT_BUCKET][DIG_CHANNEL_FX_N][k]  = (float)(-0.3 * way);
+            dig.rubs[DIG_JOINT_BUCKET][DIG_CHANNEL_FZ_N][k]  = (float)(0.1 * k / POINTS);
+            dig.moment_Nm[k] += 2.0 * 0.05 * way;
+            dig.sigma_Nm[k]         = hypot(dig.sigma_Nm[k], 0.05);
+            dig.force_sigma_N[0][k] = hypot(dig.force_sigma_N[0][k], 0.3);
+            dig.force_sigma_N[1][k] = hypot(dig.force_sigma_N[1][k], 0.1 * k / POINTS);
+        }
+        struct dig_pool_sums  sums;
+        struct dig_likelihood likelihood;
+        struct dig_cell       cell;
+        const size_t          e = (size_t)(7 * trial);
+        dig_pool_sum(1, &dig, &sums);
+        dig_likelihood_make(set, &sums.group[0], &likelihood);
+        assert_int_equal(dig_cell_find(set, &set->gravel[e], MADE_SIMPLE_A, &cell), DIG_OK);
+
+        enum { STEPS = 1600 };
+        static struct dig_pooled off;
+        const double             width = 16.0, step  = width / STEPS;
+        double                   log_of[STEPS], most = -INFINITY, sum = 0.0;
+        for (int i = 0; i < STEPS; i++) {
+            const double rubs = step * (i + 0.5) - 0.5 * width;
+            off               = sums.group[0];
+            for (int k = 0; k < POINTS; k++) {
+                for (int c = 0; c < (off.forces ? 3 : 1); c++) {
+                    const double v = (double)dig.rubs[DIG_JOINT_BUCKET][c][k];
+                    off.mean[c][k] -= rubs * v;
+                }
+            }
+            log_of[i] = log_by_hand(set, e, &off) - 0.5 * rubs * rubs;
+            most      = fmax(most, log_of[i]);
+        }
+        for (int i = 0; i < STEPS; i++) {
+            sum += step * exp(log_of[i] - most) / sqrt(2.0 * 3.14159265358979);
+        }
+        const double expected = most + log(sum);
+        assert_close(dig_likelihood_log(&likelihood, &cell), expected,
+                     1e-5 * (1.0 + fabs(expected)));
+    }
+    made_table_destroy(set);
+}

@@ -37,6 +37,21 @@ static struct dig_covariance *learnt(uint64_t *const seed)
     return c;
 }
 
+// Friction of drives that turn about at some point, and act on channels in their own way.
+static void rub(struct dig_observation *const o, uint64_t *const seed)
+{
+    for (int j = 0; j < DIG_RUBS; j++) {
+        for (int c = 0; c < DIG_FORCE_CHANNELS; c++) {
+            const double by = (c == 0 ? 0.1 : 0.5) * model_normal(seed);
+            for (int k = 0; k < POINTS; k++) {
+                double *const sigma = c == 0 ? &o->sigma_Nm[k] : &o->force_sigma_N[c - 1][k];
+                o->rubs[j][c][k]    = (float)(k < 60 + 50 * j ? by : -by);
+                *sigma              = hypot(*sigma, by);
+            }
+        }
+    }
+}
+
 TEST(it_is_the_formula_written_out)
 {
     struct dig_curve_set *const set                       = made_table(&options);
@@ -56,6 +71,9 @@ TEST(it_is_the_formula_written_out)
                                     trial % 4 < 2, &seed);
             dig[d].first = trial % 5 == 0 ? 0.1 + 0.1 * (double)d : 0.0;
             dig[d].last  = trial % 7 == 0 ? 0.6 : 1.0;
+            if (trial % 4 > 0) {
+                rub(&dig[d], &seed);
+            }
         }
         struct dig_pool_sums sums;
         dig_pool_sum(digs, dig, &sums);

@@ -144,6 +144,7 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
     const int                     from = all->count;
     int                           which[MOST];
     double dig2[MOST], noise2_of[MOST], together[MOST], square[3] = { 0 }, squares[3] = { 0 };
+    double rubs[MOST][DIG_RUBS];
     double scale[MOST];
     for (int w = 0; w < (group->forces ? 3 : 1) * BLOCKS; w++) {
         const int    i = w / BLOCKS, b = w % BLOCKS;
@@ -180,6 +181,9 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
         all->miss[n] = x - mean_in(group, b, NULL, c->mean[i]);
         dig2[n]      = own2 * mean_in(group, b, one, NULL);
         noise2_of[n] = mean_in(group, b, noise, NULL);
+        for (int j = 0; j < DIG_RUBS; j++) {
+            rubs[n][j] = mean_in(group, b, NULL, group->rubs[j][i]);
+        }
         square[i] += x * x;
         squares[i] += 1.0;
     }
@@ -193,6 +197,9 @@ static inline void append(const struct dig_curve_set *const set, const size_t en
         for (int o = from; o < all->count; o++) {
             all->d[n][o] = scale[n] * scale[o] * (n == o ? 1.0 : together[n] * together[o]) *
                            relative->of[which[n]][which[o]];
+            for (int j = 0; j < DIG_RUBS; j++) { // friction is the same in all
+                all->d[n][o] += rubs[n][j] * rubs[o][j];
+            }
         }
     }
 }

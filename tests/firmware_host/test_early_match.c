@@ -155,7 +155,7 @@ TEST(the_whole_dig_takes_its_place)
 
     // Until it is over no one says how it ended.
     struct dig_observation going_on;
-    assert_int_equal(dig_live_recording_observe(b->set, &b->config.estimator, NULL, &b->live,
+    assert_int_equal(dig_live_recording_observe(b->set, &b->config.estimator, NULL, NULL, &b->live,
                                                 b->buffer, &going_on),
                      DIG_OK);
     assert_true(going_on.last > 0.95);
