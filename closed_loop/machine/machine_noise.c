@@ -296,7 +296,7 @@ void dig_machine_noise_tell(struct dig_lines *const lines, const double at[],
 {
     assert(lines != NULL && at != NULL && noise != NULL);
     double      stood[DIG_LINES_COLUMNS_MAX];
-    struct mean mean[MEMORIES];
+    struct mean mean[MEMORIES]   = { { .alone = 1.0 } };
     struct told told[DIG_JOINTS] = { { .misfit = { 0.0 } } };
     double      all[MEMORIES]    = { 0.0 };
     size_t      m                = 0;
