@@ -174,7 +174,6 @@ static double misfit_of(const struct dig_air *const air, struct joint *const of,
                         const struct mean *const mean, const double size2_N2)
 {
     double        x[DIG_LINES_COLUMNS_MAX];
-    double        along[DIG_LINES_COLUMNS_MAX];
     const size_t  n       = of->columns;
     const double  log_det = whiten(air, of, mean, size2_N2);
     double *const rest    = of->white;
@@ -187,10 +186,15 @@ static double misfit_of(const struct dig_air *const air, struct joint *const of,
         }
         of->h[a * n + a] += 1.0;
     }
-    memcpy(along, x, n * sizeof x[0]);
     dig_cholesky_sure(n, of->h);
-    dig_cholesky_solve(n, of->h, x);
-    sum += dig_lower_log_det(n, of->h) - dig_product(n, x, along);
+    dig_lower_solve(n, of->h, x);
+    sum += dig_lower_log_det(n, of->h) - dig_product(n, x, x);
+    for (size_t a = n; a-- > 0;) { // the transpose's turn
+        for (size_t b = a + 1; b < n; b++) {
+            x[a] -= of->h[b * n + a] * x[b];
+        }
+        x[a] /= of->h[a * n + a];
+    }
     for (size_t a = 0; a < n; a++) {
         for (size_t i = 0; i < of->rows; i++) {
             rest[i] -= x[a] * slope[a * of->rows + i];
