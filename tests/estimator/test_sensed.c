@@ -31,6 +31,23 @@ static struct dig_sample resting(void)
     return dig_rig_sense(&machine, &row, 1, NULL);
 }
 
+// How a bucket moves that is at these poses, span_s apart: second differences.
+static struct dig_rig_motion motion_of(const struct dig_machine *const machine,
+                                       const struct dig_rig_pose pose[const 3], const double span_s)
+{
+    static const double   share[3] = { 1.0, -2.0, 1.0 };
+    struct dig_rig_motion motion   = { .turn_radps2 = { 0.0 } };
+    for (int k = 0; k < 3; k++) {
+        const double          per_s2 = share[k] / (span_s * span_s);
+        const struct dig_vec2 com =
+            dig_rig_front_carried(machine, &pose[k]).com_m[DIG_JOINT_BUCKET];
+        struct dig_vec2 *const sum = &motion.com_mps2[DIG_JOINT_BUCKET];
+        *sum                       = dig_vec2_add_scaled(*sum, per_s2, com);
+        motion.turn_radps2[DIG_JOINT_BUCKET] += per_s2 * pose[k].phi_rad;
+    }
+    return motion;
+}
+
 // The machine leans by a pitch: gravity is plumb in the world, all else is told in its own frame.
 TEST(the_load_that_virtual_work_holds_is_found_again)
 {
@@ -56,7 +73,7 @@ TEST(the_load_that_virtual_work_holds_is_found_again)
             world[k] = (struct dig_rig_pose){ pin.x + 0.5 * 4.0 * t * t, pin.y - 0.5 * 3.0 * t * t,
                                               phi + lean + spin * t + 0.5 * alpha * t * t };
         }
-        const struct dig_rig_motion motion = dig_rig_gauge_motion(&machine, world, h);
+        const struct dig_rig_motion motion = motion_of(&machine, world, h);
         const struct dig_vec2       force  = turned(lean, soil[0], soil[1]);
         const struct dig_rig_wrench load   = { force.x, force.y, soil[2] };
         const struct dig_rig_row    row    = {

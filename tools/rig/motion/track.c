@@ -30,9 +30,10 @@ static struct dig_rig_pose placed(const struct dig_rig_path *const path, const s
 }
 
 // Whether inertia counts at frame i: the machine stands still at both ends.
-static bool moves(const struct dig_rig_path *const path, const size_t i)
+static bool moves(const struct dig_rig_track_options *const options,
+                  const struct dig_rig_path *const path, const size_t i)
 {
-    return i >= reach && i + reach < path->frames;
+    return !options->quasi_static && i >= reach && i + reach < path->frames;
 }
 
 // Accelerations of the links at frame i, or of a bucket that a force sensor carries: second
@@ -76,7 +77,8 @@ static enum dig_status refuse(const struct dig_machine *const    machine,
                          dig_rig_margin_text(margin, sizeof text, text), at_s);
 }
 
-static enum dig_status fill(const struct dig_machine *const  machine,
+static enum dig_status fill(const struct dig_machine *const           machine,
+                            const struct dig_rig_track_options *const options,
                             const struct dig_rig_path *const path, const size_t every,
                             struct dig_rig_track *const track, struct dig_error *const error)
 {
@@ -88,7 +90,7 @@ static enum dig_status fill(const struct dig_machine *const  machine,
         struct dig_rig_motion     motion = { .turn_radps2 = { 0.0 } };
         struct dig_rig_state      state;
         enum dig_status           status = DIG_OK;
-        if (moves(path, i)) {
+        if (moves(options, path, i)) {
             status = move(machine, path, i, &track->placement, &motion);
         }
         if (status == DIG_OK) {
@@ -116,7 +118,7 @@ static enum dig_status fill(const struct dig_machine *const  machine,
     return track->nearest.share > 0.0 ? DIG_OK : refuse(machine, &track->nearest, worst_s, error);
 }
 
-// The rows of a path as it is, or where the machine has most room.
+// The rows of a path as it is placed, or where the machine has most room.
 static enum dig_status lay(const struct dig_machine *const           machine,
                            const struct dig_rig_track_options *const options,
                            const struct dig_rig_path *const path, const bool search,
@@ -128,6 +130,7 @@ static enum dig_status lay(const struct dig_machine *const           machine,
         .rows          = (path->frames - 1) / every + 1,
         .step_s        = (double)every * DIG_RIG_STEP_s,
         .nearest       = { .share = INFINITY },
+        .placement     = { .X_m = options->pin_X_m, .Z_m = options->pin_Z_m },
         .blend_off_m   = path->blend_off_m,
         .blend_off_rad = path->blend_off_rad,
     };
@@ -138,7 +141,7 @@ static enum dig_status lay(const struct dig_machine *const           machine,
     result.row                    = row;
     if (status == DIG_OK) {
         status = row == NULL ? dig_error_set(error, DIG_ENOMEM, "%zu rows", result.rows)
-                             : fill(machine, path, every, &result, error);
+                             : fill(machine, options, path, every, &result, error);
     }
     if (status != DIG_OK) {
         free(row);
@@ -171,7 +174,8 @@ enum dig_status dig_rig_track_build(const struct dig_machine *const           ma
         return status;
     }
 
-    status = lay(machine, options, &path, !machine->sensor.fitted, track, error);
+    status =
+        lay(machine, options, &path, !options->placed && !machine->sensor.fitted, track, error);
     dig_rig_path_finish(&path);
     return status;
 }

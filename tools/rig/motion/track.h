@@ -38,6 +38,9 @@ struct dig_rig_track_options {
     bool   air;
     double air_pace; // tools/rig/motion/path.h
     bool   blend;
+    bool   quasi_static; // the inertia of the links is left out
+    bool   placed;       // at pin_X_m, pin_Z_m; else where the machine has most room
+    double pin_X_m, pin_Z_m;
 };
 
 struct dig_rig_track_options dig_rig_track_options_default(void);
