@@ -19,7 +19,7 @@ enum dig_ending {
 
 /// Frictions of a dig that no file tells, a number each for the whole of it: of each drive while
 /// its rod moves, and then of each while it stands.
-#define DIG_RUBS (2 * DIG_JOINTS)
+enum { DIG_RUBS = 2 * DIG_JOINTS };
 
 /// One dig on the table's grid of progress, rig scale.
 struct dig_observation {
