@@ -232,7 +232,7 @@ ASAN_FLAGS := -O1 -g1 -DDIG_KERNEL_BASE -fsanitize=address,undefined -fno-saniti
 ASAN_NUMERIC := -fno-sanitize=null,pointer-overflow
 # Tests that repeat, for statistics or in larger beds, what smaller ones do once: minutes under a sanitizer, for nothing new.
 statistics := $(foreach t,approaches_shipped coverage design_shipped effect_noise_shipped \
-                few_packings layers_shipped noise_shipped pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
+                few_packings lateness_shipped layers_shipped noise_shipped pour rig_track round_trip search slump small_digs,$(wildcard tests/*/test_$(t).c))
 check-asan: ## The unit tests under AddressSanitizer and UBSan
 	+$(Q)$(sanitized) BUILD=$(BUILD)/asan tested="$(filter-out $(statistics),$(test_src))" \
 	    CFLAGS="$(ASAN_FLAGS)" NUMERIC_CFLAGS="$(ASAN_NUMERIC)"

@@ -134,7 +134,7 @@ TEST(a_machine_that_leans_more_than_is_allowed_for_is_unlike_its_file)
     struct campaign *const allowed = trace(&leans, 9);
     assert_false(allowed->finding.significant || allowed->finding.unlike.is);
     end(allowed);
-    for (int way = -1; way <= 1; way += 2) {
+    for (int way = test_is_quick() ? 1 : -1; way <= 1; way += 2) {
         const double       rad = way * 4.0 * DIG_RAD_PER_DEG;
         const struct fault far = { .pitched_rad = rad };
 
