@@ -14,7 +14,8 @@
 extern void *__libc_malloc(size_t size);               // NOLINT(bugprone-reserved-identifier)
 extern void *__libc_calloc(size_t count, size_t size); // NOLINT(bugprone-reserved-identifier)
 extern void *__libc_realloc(void *old, size_t size);   // NOLINT(bugprone-reserved-identifier)
-static _Thread_local unsigned long allocations;
+// volatile: the compiler takes malloc() for a function that leaves it as it is.
+static _Thread_local volatile unsigned long allocations;
 
 void *malloc(const size_t size)
 {

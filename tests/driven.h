@@ -30,19 +30,19 @@ struct drive {
 
 /// One machine, one table, one estimator, and the digs driven through it.
 struct driven {
-    struct dig_machine         machine;
-    struct dig_curve_set      *set;
-    struct dig_estimator      *estimator;
-    bool                       keeps; // does not give a finished dig back
-    double                     time_s;
-    const unsigned long       *allocations; // of this thread; NULL: nobody counts
-    size_t                     observations, steps_with_allocation;
-    struct dig_live_recording *live; // NULL: none follows
-    struct dig_observation     observation;
-    bool                       gave_up; // of the raw dig taken last, when nothing was told of it:
-    int                        gave_up_of; // the trajectory, and where
-    double                     gave_up_at;
-    struct dig_estimate        estimate;
+    struct dig_machine            machine;
+    struct dig_curve_set         *set;
+    struct dig_estimator         *estimator;
+    bool                          keeps; // does not give a finished dig back
+    double                        time_s;
+    const volatile unsigned long *allocations; // of this thread; NULL: nobody counts
+    size_t                        observations, steps_with_allocation;
+    struct dig_live_recording    *live; // NULL: none follows
+    struct dig_observation        observation;
+    bool                gave_up;    // of the raw dig taken last, when nothing was told of it:
+    int                 gave_up_of; // the trajectory, and where
+    double              gave_up_at;
+    struct dig_estimate estimate;
     // of the dig driven last
     struct dig_observation early[DRIVEN_LOOKS]; // what the live saw; trajectory -1: nothing
     int                    earlies;

@@ -23,7 +23,7 @@ check "and nothing in it trembled" eval '! grep -q trembles $work/out'
 check "its bucket is of steel" grep -q "of friction 0.4 and rolling friction 0.4; resistance goes with the density" "$work/out"
 check "what finer gravel is taken for is said" grep -q "finer gravel resists less" "$work/out"
 "$BIN/digsightd" -c config/digsightd.yaml --check >"$work/out"
-check "it is the table that digsightd begins with" eval 'grep -q "scene product (.*), 60 gravels" $work/out && ! grep -q trembles $work/out'
+check "it is the table that digsightd begins with" eval 'grep -q "scene product (.*), 144 gravels" $work/out && ! grep -q trembles $work/out'
 cp tables/product.sqlite "$work/begun.sqlite"
 digtable generate config/scenes/product.yaml config/grids/product.yaml -o "$work/begun.sqlite" --time-limit 0
 check "and its digs are those of the product grid" eval 'is $code 0 && grep -q "468 of 468 digs" $work/err'
