@@ -54,7 +54,9 @@ static void put_text(FILE *const to, const char *const text)
     char clean[4096];
     dig_text_copy(sizeof clean, clean, text);
     for (char *c = clean; *c != '\0'; c++) {
-        *c = *c == '\n' || *c == '\t' ? '?' : *c;
+        if (*c == '\n' || *c == '\t') {
+            *c = '?';
+        }
     }
     dig_text_put_json(to, clean);
 }

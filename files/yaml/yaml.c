@@ -62,7 +62,7 @@ enum dig_status dig_yaml_read(const char *const path, const struct dig_yaml_file
     void *const loaded = calloc(1, schema->size);
     status             = loaded == NULL ? dig_error_set(error, DIG_ENOMEM, "%s: no memory", path)
                                         : load(path, &document, schema, loaded, error);
-    if (status == DIG_OK) {
+    if (status == DIG_OK && loaded != NULL) {
         struct dig_error      found = { "" };
         struct dig_conditions c     = { .error = &found };
         take(path, loaded, &c);

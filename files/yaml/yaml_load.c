@@ -63,6 +63,7 @@ static const char *const wanted[] = {
     [DIG_YAML_BOOL] = "true or false", [DIG_YAML_COUNT] = "a whole number, not negative",
     [DIG_YAML_WORD] = "a text",        [DIG_YAML_TEXT] = "a text",
     [DIG_YAML_MAPPING] = "a mapping",  [DIG_YAML_LIST] = "a list",
+    [DIG_YAML_ANY] = "a value",
 };
 
 // What stands there instead.

@@ -69,16 +69,12 @@ struct dig_yaml_file {
 #define NUMBERS(key, flag, type, member)                                                           \
     FIELD(LIST, key, type, member, flag, .of = &dig_yaml_number)
 
-/// Two numbers into members that stand one behind the other.
+/// Two numbers into doubles that stand one behind the other.
 #define PAIR(key_, type, first, second)                                                            \
     {                                                                                              \
         .key = (key_), .kind = DIG_YAML_LIST, .of = &dig_yaml_number,                              \
         .at   = offsetof(struct type, first),                                                      \
-        .size = 2 * sizeof(double) *                                                               \
-                sizeof(char[offsetof(struct type, second) ==                                       \
-                                    offsetof(struct type, first) + sizeof(double)                  \
-                                ? 1                                                                \
-                                : -1]),                                                            \
+        .size = offsetof(struct type, second) + sizeof(double) - offsetof(struct type, first),     \
     }
 
 /// A list of at least so many entries into member[], its length into count.
