@@ -64,11 +64,22 @@ struct dig_air_segment {
     size_t first_point, points; // those beside the air give angles alone
     size_t first_row, rows;
     double mean_Pa[DIG_JOINTS * DIG_CHAMBERS];
+
+    // How its points were last asked about: their balances are kept.
+    struct dig_correction asked;
+    bool                  known, calm, held;
 };
 
-/// Of a point, N at the rods: what is left without friction, what friction takes, what is left.
+/// A point's balance as last worked out; a column of the equations changes a part of it.
 struct dig_air_balance {
-    double rest_N[DIG_JOINTS], taken_N[DIG_JOINTS], left_N[DIG_JOINTS];
+    struct dig_rates    rates;
+    struct dig_readings readings;
+    bool                read;
+    bool                lever_ok[DIG_JOINTS];
+    double              arm_m[DIG_JOINTS];
+    double              mass_Nm[DIG_JOINTS]; // of weight and inertia about the pins
+    double              rest_N[DIG_JOINTS], taken_N[DIG_JOINTS]; // without friction, by friction
+    double              left_N[DIG_JOINTS];                      // by both
 };
 
 /// Free with dig_air_finish().
@@ -101,7 +112,8 @@ void dig_air_forces(const struct dig_air *air, const struct dig_correction corre
                     double drive_N[], double load_N[]);
 
 /// Residual of every row of the corrected machine, in its sigmas: rest[rows], correction[segments].
-/// calm: with the calm pressures, as slopes are taken. Uses air's scratch.
+/// calm: with the calm pressures, as slopes are taken. Asked again with a correction that differs
+/// in a part, it costs that part. Uses air's scratch.
 void dig_air_rest(const struct dig_air *air, const struct dig_correction correction[], bool calm,
                   double rest[]);
 

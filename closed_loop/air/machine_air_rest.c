@@ -51,52 +51,103 @@ static double held_N(const struct dig_friction *const friction, const double pus
     return fabs(dig_friction_loss_N(friction, push_N, copysign(moves_mps, rod_mps)) - loss_N);
 }
 
-// A point as a machine has it: what it reads, its levers, and what weight and inertia ask for about
-// the pins.
-struct seen {
-    bool                read;
-    struct dig_readings readings;
-    bool                lever_ok[DIG_JOINTS];
-    double              arm_m[DIG_JOINTS];
-    double              mass_Nm[DIG_JOINTS];
+// What of a balance has to be worked out anew.
+struct stale {
+    bool readings, masses;
+    bool lever[DIG_JOINTS], joint[DIG_JOINTS]; // a joint's lever; any of what is left of it
 };
 
-static void look(const struct dig_machine *const    corrected,
-                 const struct dig_correction *const correction,
-                 const struct dig_air_point *const at, struct seen *const seen)
+// True when numbers of two corrections differ: they are structs of doubles.
+static bool differ(const void *const a, const void *const b, const size_t bytes)
 {
-    *seen      = (struct seen){ .read = false };
-    seen->read = dig_readings_take(corrected, correction, &at->sample, &at->rates,
-                                   &seen->readings) == DIG_OK;
-    if (!seen->read) {
-        return;
+    const double *const one   = a;
+    const double *const other = b;
+    bool                same  = true;
+    for (size_t i = 0; i < bytes / sizeof(double); i++) {
+        same = same && fabs(one[i] - other[i]) <= 0.0;
     }
-    const double *const    joint_rad = seen->readings.joint_rad;
-    const struct dig_front front     = dig_front_place(corrected, joint_rad);
-    dig_dynamics_Nm(corrected, &front, &at->rates, seen->readings.pitch_rad, seen->mass_Nm);
+    return !same;
+}
+
+static const struct stale all = { true, true, { true, true, true }, { true, true, true } };
+
+#define DIFFER(member) differ(&a->member, &b->member, sizeof a->member)
+
+static struct stale stale_between(const struct dig_correction *const a,
+                                  const struct dig_correction *const b, const bool other_way)
+{
+    struct stale stale  = { .readings = other_way };
+    const bool   late   = DIFFER(delay_s);
+    const bool   loads  = DIFFER(link) || DIFFER(payload);
+    const bool   angles = DIFFER(angle_rad) || DIFFER(level_rad) || late;
+    const bool   bars = DIFFER(rocker_m) || DIFFER(link_m) || DIFFER(rocker_pin_m) || DIFFER(ear_m);
+    stale.masses      = loads || angles;
+    for (int j = 0; j < DIG_JOINTS; j++) {
+        const bool pushes = DIFFER(offset_Pa[j]) || DIFFER(gain[j]);
+        stale.readings    = stale.readings || pushes || angles;
+        stale.lever[j]    = DIFFER(base_m[j]) || DIFFER(eye_m[j]) || DIFFER(angle_rad[j]) || late ||
+                         (j == DIG_JOINT_BUCKET && bars);
+        stale.joint[j] =
+            other_way || pushes || stale.lever[j] || stale.masses || DIFFER(friction[j]);
+    }
+    return stale;
+}
+
+static struct stale stale_of(const struct dig_air_segment *const segment,
+                             const struct dig_correction *const correction, const bool calm,
+                             const bool held)
+{
+    return segment->known ? stale_between(&segment->asked, correction,
+                                          calm != segment->calm || held != segment->held)
+                          : all;
+}
+
+static void read_point(const struct dig_machine *const    corrected,
+                       const struct dig_correction *const correction,
+                       struct dig_air_point *const at, const bool calm,
+                       struct dig_air_balance *const kept)
+{
+    for (size_t c = 0; calm && c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
+        at->sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = at->calm_Pa[c];
+    }
+    kept->rates = at->rates;
+    kept->read  = dig_readings_take(corrected, correction, &at->sample, &at->rates,
+                                    &kept->readings) == DIG_OK;
+}
+
+// Levers and masses.
+static void pose(const struct dig_machine *const corrected, const struct stale *const stale,
+                 struct dig_air_balance *const kept)
+{
+    const struct dig_readings *const readings = &kept->readings;
+    if (stale->masses) {
+        const struct dig_front front = dig_front_place(corrected, readings->joint_rad);
+        dig_dynamics_Nm(corrected, &front, &kept->rates, readings->pitch_rad, kept->mass_Nm);
+    }
     for (int j = 0; j < DIG_JOINTS; j++) {
         struct dig_lever lever;
-        seen->lever_ok[j] =
-            dig_lever_solve(corrected, (enum dig_joint)j, joint_rad[j], &lever) == DIG_OK;
-        seen->arm_m[j] = seen->lever_ok[j] ? lever.arm_m : 0.0;
+        if (stale->lever[j]) {
+            kept->lever_ok[j] = dig_lever_solve(corrected, (enum dig_joint)j,
+                                                readings->joint_rad[j], &lever) == DIG_OK;
+            kept->arm_m[j]    = kept->lever_ok[j] ? lever.arm_m : 0.0;
+        }
     }
 }
 
 // What is left of a joint, N at the rod, and what friction takes of it; held: what it may take
 // more.
 static void balance_joint(const struct dig_friction *const friction, const size_t j,
-                          const struct seen *const seen, const double velocity_radps,
-                          const bool held, struct dig_air_balance *const balance)
+                          const bool held, struct dig_air_balance *const kept)
 {
-    balance->rest_N[j]  = 0.0;
-    balance->taken_N[j] = 0.0;
-    if (seen->read && seen->lever_ok[j]) {
-        const double arm_m   = seen->arm_m[j];
-        const double push_N  = seen->readings.push[j].push_N;
-        const double rod_mps = arm_m * velocity_radps;
+    kept->rest_N[j]  = 0.0;
+    kept->taken_N[j] = 0.0;
+    if (kept->read && kept->lever_ok[j]) {
+        const double arm_m   = kept->arm_m[j];
+        const double push_N  = kept->readings.push[j].push_N;
+        const double rod_mps = arm_m * kept->rates.velocity_radps[j];
         const double loss_N  = dig_friction_loss_N(friction, push_N, rod_mps);
-        balance->rest_N[j]   = (arm_m * push_N + seen->mass_Nm[j]) / arm_m;
-        balance->taken_N[j]  = held ? held_N(friction, push_N, rod_mps, loss_N) : loss_N;
+        kept->rest_N[j]      = (arm_m * push_N + kept->mass_Nm[j]) / arm_m;
+        kept->taken_N[j]     = held ? held_N(friction, push_N, rod_mps, loss_N) : loss_N;
     }
 }
 
@@ -120,31 +171,61 @@ static double smooth_at(const struct dig_air_balance balance[], const size_t poi
 
 // Balances every point of a segment: what is left of its joints, friction taken off; or what
 // friction may take more.
-static void balance_all(const struct dig_air *const air, const size_t s,
-                        const struct dig_correction *const correction, const bool calm,
-                        const bool held)
+static void balance(const struct dig_air *const air, const size_t s,
+                    const struct dig_correction *const correction, const bool calm, const bool held)
 {
-    const struct dig_air_segment *const segment = &air->segment[s];
-    const struct dig_air_point *const   point   = &air->point[segment->first_point];
-    struct dig_air_balance *const       balance = &air->balance[segment->first_point];
-    const struct dig_machine corrected          = dig_correction_machine(&air->machine, correction);
+    struct dig_air_segment *const     segment   = &air->segment[s];
+    const struct dig_air_point *const point     = &air->point[segment->first_point];
+    struct dig_air_balance *const     kept      = &air->balance[segment->first_point];
+    const struct dig_machine          corrected = dig_correction_machine(&air->machine, correction);
+    const struct stale                stale     = stale_of(segment, correction, calm, held);
+    bool turned = false; // whether a point is read that was not, or the other way
     for (size_t p = 0; p < segment->points; p++) {
-        struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
-        struct seen          seen;
-        for (size_t c = 0; calm && c < (size_t)DIG_JOINTS * DIG_CHAMBERS; c++) {
-            at.sample.value[(size_t)DIG_SIGNAL_BOOM_HEAD_Pa + c] = at.calm_Pa[c];
+        const bool was_read = segment->known && kept[p].read;
+        if (stale.readings) {
+            struct dig_air_point at = delayed(point, segment->points, p, correction->delay_s);
+            read_point(&corrected, correction, &at, calm, &kept[p]);
         }
-        look(&corrected, correction, &at, &seen);
+        const struct stale *const now = kept[p].read == was_read ? &stale : &all;
+
+        turned = turned || now == &all;
+        if (kept[p].read) {
+            pose(&corrected, now, &kept[p]);
+        }
         for (size_t j = 0; j < DIG_JOINTS; j++) {
-            balance_joint(&correction->friction[j], j, &seen, at.rates.velocity_radps[j], held,
-                          &balance[p]);
+            if (now->joint[j]) {
+                balance_joint(&correction->friction[j], j, held, &kept[p]);
+            }
         }
     }
     for (size_t p = 0; p < segment->points; p++) {
         for (size_t j = 0; j < DIG_JOINTS; j++) {
-            const double taken_N = smooth_at(balance, segment->points, p, j);
-            balance[p].left_N[j] = held ? taken_N : balance[p].rest_N[j] - taken_N;
+            if (stale.joint[j] || turned) {
+                const double taken_N = smooth_at(kept, segment->points, p, j);
+                kept[p].left_N[j]    = held ? taken_N : kept[p].rest_N[j] - taken_N;
+            }
         }
+    }
+    segment->asked = *correction;
+    segment->known = true;
+    segment->calm  = calm;
+    segment->held  = held;
+}
+
+// Of one point: pushes and loads.
+static void forces_at(const struct dig_machine *const    machine,
+                      const struct dig_correction *const correction, struct dig_air_point *const at,
+                      double drive_N[DIG_JOINTS], double load_N[DIG_JOINTS])
+{
+    struct dig_air_balance made;
+    read_point(machine, correction, at, false, &made);
+    if (made.read) {
+        pose(machine, &all, &made);
+    }
+    for (size_t j = 0; j < DIG_JOINTS; j++) {
+        const bool known = made.read && made.lever_ok[j] && made.readings.push[j].valid;
+        drive_N[j]       = known ? made.readings.push[j].push_N : (double)NAN;
+        load_N[j]        = known ? -made.mass_Nm[j] / made.arm_m[j] : (double)NAN;
     }
 }
 
@@ -157,16 +238,10 @@ void dig_air_forces(const struct dig_air *const air, const struct dig_correction
         const struct dig_air_point *const   point   = &air->point[segment->first_point];
         const struct dig_machine machine = dig_correction_machine(&air->machine, &correction[s]);
         for (size_t p = 0; p < segment->points; p++) {
-            const struct dig_air_point at =
-                delayed(point, segment->points, p, correction[s].delay_s);
-            struct seen seen;
-            look(&machine, &correction[s], &at, &seen);
-            for (size_t j = 0; j < DIG_JOINTS; j++) {
-                const size_t to    = DIG_JOINTS * (segment->first_point + p) + j;
-                const bool   known = seen.read && seen.lever_ok[j] && seen.readings.push[j].valid;
-                drive_N[to]        = known ? seen.readings.push[j].push_N : (double)NAN;
-                load_N[to]         = known ? -seen.mass_Nm[j] / seen.arm_m[j] : (double)NAN;
-            }
+            const size_t to = DIG_JOINTS * (segment->first_point + p);
+
+            struct dig_air_point at = delayed(point, segment->points, p, correction[s].delay_s);
+            forces_at(&machine, &correction[s], &at, &drive_N[to], &load_N[to]);
         }
     }
 }
@@ -175,7 +250,7 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
 {
     assert(air != NULL && correction != NULL);
     for (size_t s = 0; s < air->segments; s++) {
-        const struct dig_air_segment *const segment = &air->segment[s];
+        struct dig_air_segment *const       segment = &air->segment[s];
         struct dig_air_point *const         point   = &air->point[segment->first_point];
         const struct dig_air_balance *const kept    = &air->balance[segment->first_point];
         for (size_t p = 0; p < segment->points; p++) {
@@ -185,7 +260,9 @@ void dig_air_calm(struct dig_air *const air, const struct dig_correction correct
                                               : point[p].sample.value[DIG_SIGNAL_BOOM_HEAD_Pa + c];
             }
         }
-        balance_all(air, s, &correction[s], true, false);
+        segment->known = false; // by other pressures than these
+        balance(air, s, &correction[s], true, false);
+        segment->known = false;
         for (size_t j = 0; j < DIG_JOINTS; j++) {
             const struct dig_cylinder *const cylinder = &air->machine.cylinder[j];
 
@@ -207,7 +284,7 @@ static void of_rows(const struct dig_air *const air, const struct dig_correction
 {
     for (size_t s = 0; s < air->segments; s++) {
         const struct dig_air_segment *const segment = &air->segment[s];
-        balance_all(air, s, &correction[s], calm, held);
+        balance(air, s, &correction[s], calm, held);
         for (size_t r = segment->first_row; r < segment->first_row + segment->rows; r++) {
             const struct dig_air_row *const row   = &air->row[r];
             double                          sum_N = 0.0;
