@@ -58,7 +58,7 @@ static void add_point(const struct dig_likelihood *const l, const double inverse
 {
     double       spread[DIG_FORCE_CHANNELS];
     double       lower[DIG_FORCE_CHANNELS][DIG_FORCE_CHANNELS];
-    double       d[DIG_FORCE_CHANNELS];
+    double       d[DIG_FORCE_CHANNELS] = { 0.0 };
     double       miss[DIG_FORCE_CHANNELS];
     double       rubs[DIG_FORCE_CHANNELS][DIG_RUBS];
     const double inverse_digs = 1.0 / l->group->count[k];
