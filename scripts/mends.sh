@@ -26,10 +26,10 @@ a pipe or a link beside a table is not opened|tables/open.c|s/!S_ISREG(found.st_
 a table is the file of its very name|tables/open.c|s,"" : "./","" : "",|tables/test_hostile
 no table is made through a link|tables/store.c|s/O_CREAT . O_EXCL/O_CREAT/|tables/test_hostile
 a flipped bit is found at opening|tables/schema/head.c|s/dig_seal_check(db);//|tables/test_seal
-aliases that grow are refused|files/yaml/yaml_growth.c|s/GROWTH_MAX 100000 /GROWTH_MAX 100000000 /|files/test_yaml_growth
-directives behind any end of a line are counted|files/yaml/yaml_growth.c|s/, "\\r", .*"\\xE2\\x80\\xA9"//|files/test_yaml_growth
-values without number are refused|files/yaml/yaml_growth.c|s/VALUES_MAX 1000000 /VALUES_MAX 100000000 /|files/test_yaml_growth
-an alias in its own anchor is refused|files/yaml/yaml_growth.c|s/"an alias within its own anchor/"/|files/test_yaml_growth
+a text of megabytes is no configuration|files/yaml/yaml_tree.c|s/(2 << 20)/(200 << 20)/|files/test_yaml_tree
+anchors without number are refused|files/yaml/yaml_tree.c|s/anchors > SIGNS_MOST/anchors > 1000 * SIGNS_MOST/|files/test_yaml_tree
+directives without number are refused|files/yaml/yaml_tree.c|s/directives > SIGNS_MOST/directives > 1000 * SIGNS_MOST/|files/test_yaml_tree
+what nests without end is refused|files/yaml/yaml_tree.c|s/depth > DEPTH_MOST)/depth > 10000 * DEPTH_MOST)/|files/test_yaml_tree
 a pipe or device is refused at once|core/regular.c|s/!S_ISREG(found.st_mode)/0/|core/test_regular
 a link where a part should go is not followed|core/part.c|s/if (unlink(path) != 0/if (path == NULL/;s/O_EXCL . O_NOFOLLOW/O_TRUNC/|core/test_part
 a link where an output should go is replaced|files/text/whole.c|s/S_ISLNK(named.st_mode)/false/|files/test_whole
