@@ -62,6 +62,21 @@ static struct dig_vec2 bucket_pin(const struct dig_machine *const m, const doubl
                               boom_m * sin(q[0]) + arm_m * sin(q[0] + q[1]) };
 }
 
+// The virtual work of a load on the bucket, a radian of joint j.
+static double work_Nm(const struct dig_machine *const m, const double q[DIG_JOINTS],
+                      const struct model_load *const load, const int j)
+{
+    const double h     = 1e-5;
+    double       up[3] = { q[0], q[1], q[2] };
+    double       dn[3] = { q[0], q[1], q[2] };
+    up[j] += h;
+    dn[j] -= h;
+    const struct dig_vec2 high = bucket_pin(m, up);
+    const struct dig_vec2 low  = bucket_pin(m, dn);
+    return load->FX_N * (high.x - low.x) / (2.0 * h) + load->FZ_N * (high.y - low.y) / (2.0 * h) +
+           load->M_Nm;
+}
+
 TEST(a_front_that_moves_without_soil_is_left_with_nothing)
 {
     const struct dig_machine m                = model_machine();
@@ -81,15 +96,7 @@ TEST(a_front_that_moves_without_soil_is_left_with_nothing)
         const struct lagrange_state still = { .q = { s.q[0], s.q[1], s.q[2] } };
         for (int j = 0; j < DIG_JOINTS; j++) {
             // A soil that did this work would have been seen by a balance at rest.
-            const double h     = 1e-5;
-            double       up[3] = { s.q[0], s.q[1], s.q[2] };
-            double       dn[3] = { s.q[0], s.q[1], s.q[2] };
-            up[j] += h;
-            dn[j] -= h;
-            const struct dig_vec2 high = bucket_pin(&m, up);
-            const struct dig_vec2 low  = bucket_pin(&m, dn);
-            const double          work = load.FX_N * (high.x - low.x) / (2.0 * h) +
-                                load.FZ_N * (high.y - low.y) / (2.0 * h) + load.M_Nm;
+            const double work = work_Nm(&m, s.q, &load, j);
             const double more = lagrange_needed_Nm(&m, &s, a, j, 0.0) -
                                 lagrange_needed_Nm(&m, &still, rest, j, 0.0);
             assert_close(work, -more, 1e-3 * fabs(more) + 5.0);
@@ -133,15 +140,7 @@ TEST(friction_that_no_file_tells_is_in_the_sigma_with_its_direction)
             const double seal_N =
                 0.01 * c->count * c->relief_Pa * 0.25 * 3.14159265 * c->bore_m * c->bore_m;
             for (int j = 0; j < DIG_JOINTS; j++) {
-                const double h     = 1e-5;
-                double       up[3] = { s.q[0], s.q[1], s.q[2] };
-                double       dn[3] = { s.q[0], s.q[1], s.q[2] };
-                up[j] += h;
-                dn[j] -= h;
-                const struct dig_vec2 high = bucket_pin(&m, up);
-                const struct dig_vec2 low  = bucket_pin(&m, dn);
-                const double          work = load.FX_N * (high.x - low.x) / (2.0 * h) +
-                                    load.FZ_N * (high.y - low.y) / (2.0 * h) + load.M_Nm;
+                const double work = work_Nm(&m, s.q, &load, j);
                 const double is =
                     j == drive ? -seal_N * fabs(slope_m) * copysign(1.0, s.v[j]) : 0.0;
                 assert_close(work, is, 1e-3 * fabs(is) + 0.5);
